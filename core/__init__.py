@@ -1,0 +1,1 @@
+"""What the workstation knows and computes. No Qt, no GL, no CL."""
