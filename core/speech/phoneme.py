@@ -28,9 +28,7 @@ VISEME_CLASSES: tuple[tuple[str, ...], ...] = (
 
 PHONEMES: tuple[str, ...] = tuple(phone for group in VISEME_CLASSES for phone in group)
 PHONEME_INDEX: dict[str, int] = {phone: i for i, phone in enumerate(PHONEMES)}
-VISEME_OF_PHONEME: tuple[int, ...] = tuple(
-    viseme for viseme, group in enumerate(VISEME_CLASSES) for _ in group
-)
+VISEME_OF_PHONEME: tuple[int, ...] = tuple(viseme for viseme, group in enumerate(VISEME_CLASSES) for _ in group)
 
 
 def viseme_of(phone: str) -> int:
