@@ -17,12 +17,14 @@ from core.errors import WorkstationError
 _INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]*)"|(.*))')
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 
-# Where compilers put "file number" and line: Mesa ``0:12(3): error``, NVIDIA ``0(12) : error``,
-# AMD, Intel and Apple ``ERROR: 0:12: ...``.
+# GLSL knows files by number only, and Mesa 22 forgets that number in most messages: so the line number carries
+# the file as well, as file * _LINES_A_FILE + line.
+_LINES_A_FILE = 10_000
+# Where compilers put the line: Mesa ``0:12(3): error``, NVIDIA ``0(12) : error``, AMD, Intel, Apple ``ERROR: 0:12: ...``
 _GLSL_PLACES = (
-    re.compile(r"^\s*(\d+):(\d+)\(\d+\)\s*:"),
-    re.compile(r"^\s*(\d+)\((\d+)\)\s*:"),
-    re.compile(r"^\s*ERROR:\s*(\d+):(\d+)\s*:"),
+    re.compile(r"^\s*\d+:(\d+)\(\d+\)\s*:"),
+    re.compile(r"^\s*\d+\((\d+)\)\s*:"),
+    re.compile(r"^\s*ERROR:\s*\d+:(\d+)\s*:"),
 )
 # clang's ``opencl/costs.cl:12:3: error``, perhaps behind a folder or a prefix
 _OPENCL_PLACE = re.compile(r"([\w./+-]+\.(?:cl|clh|h)):(\d+)(?::\d+)?:")
@@ -85,8 +87,9 @@ def shader_error(name: str, log: str) -> ShaderError:
 def _place(complaint: str, names: list[str]) -> tuple[str, int, str] | None:
     for pattern in _GLSL_PLACES:
         match = pattern.match(complaint)
-        if match and int(match[1]) < len(names):
-            return names[int(match[1])], int(match[2]), complaint[match.end() :].strip()
+        if match:
+            number, line = divmod(int(match[1]), _LINES_A_FILE)
+            return (names[number], line, complaint[match.end() :].strip()) if number < len(names) else None
     match = _OPENCL_PLACE.search(complaint)
     if match:
         file = next((name for name in names if match[1] == name or match[1].endswith("/" + name)), None)
@@ -129,8 +132,7 @@ def _read(name: str, asked_by: str, asked_at: int | None = None) -> str:
 
 
 def _line_directive(name: str, line: int, number: int) -> str:
-    """Return ``#line``: GLSL knows files by number only, OpenCL by name."""
-    return f'#line {line} "{name}"' if _is_opencl(name) else f"#line {line} {number}"
+    return f'#line {line} "{name}"' if _is_opencl(name) else f"#line {number * _LINES_A_FILE + line} {number}"
 
 
 def _constant(value: float | str, name: str) -> str:

@@ -43,9 +43,9 @@ def test_each_line_keeps_its_own_file_and_number_across_includes_and_defines(sha
     assert "#include" not in text
     places = numbered(text)
     assert places["float one;"] == ("0", 2)
-    assert places["float b_one;"] == ("1", 1)
-    assert places["float c_two;"] == ("2", 2)
-    assert places["float b_three;"] == ("1", 3)
+    assert places["float b_one;"] == ("1", 10001)
+    assert places["float c_two;"] == ("2", 20002)
+    assert places["float b_three;"] == ("1", 10003)
     assert places["float four = SIZE;"] == ("0", 4)
 
 
@@ -98,9 +98,9 @@ def test_a_missing_shader_is_named():
 @pytest.mark.parametrize(
     "log",
     [
-        "0:1(1): warning: unused\n1:2(7): error: `wrong' undeclared",
-        "1(2) : error C1503: undefined variable wrong",
-        "ERROR: 1:2: 'wrong' : undeclared identifier",
+        "0:1(1): warning: unused\n0:10002(7): error: `wrong' undeclared",
+        "1(10002) : error C1503: undefined variable wrong",
+        "ERROR: 1:10002: 'wrong' : undeclared identifier",
     ],
     ids=["mesa", "nvidia", "apple"],
 )
