@@ -1,0 +1,84 @@
+"""A face in one compact file: compressed arrays, no pickles."""
+
+from __future__ import annotations
+
+import os
+import zipfile
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from core.errors import UserFacingError
+from core.face.face import PARTS, Face
+
+FORMAT = 1
+
+
+def save_face(face: Face, path: Path) -> None:
+    """Write ``face``, making the folder if need be."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_arrays(
+        path,
+        format=np.int64(FORMAT),
+        name=np.str_(face.name),
+        credit=np.str_(face.credit),
+        positions=face.positions,
+        triangles=face.triangles,
+        part=face.part,
+        uv=np.zeros((0, 2), np.float32) if face.uv is None else face.uv,
+        landmark_names=np.array(list(face.landmarks), np.str_),
+        landmark_vertices=np.array(list(face.landmarks.values()), np.int64),
+        unit_names=np.array(list(face.units), np.str_),
+        units=np.array(list(face.units.values()), np.float32).reshape(len(face.units), len(face.positions), 3),
+    )
+
+
+def write_arrays(path: Path, **arrays: np.ndarray) -> None:
+    """Write compressed arrays beside ``path`` and swap them in, so that no half-written file is ever seen."""
+    beside = path.with_name(f"{path.name}.{os.getpid()}.part")
+    try:
+        with open(beside, "wb") as file:
+            np.savez_compressed(file, **arrays)
+        os.replace(beside, path)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+def read_face(path: Path) -> Face:
+    """Read what `save_face` wrote; `UserFacingError` if the file is missing, damaged or another version's."""
+    try:
+        with np.load(path, allow_pickle=False) as data:
+            if int(data["format"]) != FORMAT:
+                raise UserFacingError(f"{path} is a face of another version of the workstation.")
+            face = Face(
+                name=str(data["name"]),
+                positions=data["positions"],
+                triangles=data["triangles"],
+                part=data["part"],
+                uv=data["uv"] if len(data["uv"]) else None,
+                landmarks=dict(zip(data["landmark_names"].tolist(), data["landmark_vertices"].tolist())),
+                units=dict(zip(data["unit_names"].tolist(), data["units"])),
+                credit=str(data["credit"]),
+            )
+    except (OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile, zlib.error) as error:
+        raise UserFacingError(f"{path} is not a readable face file.") from error
+    _check(face, path)
+    return face
+
+
+def _check(face: Face, path: Path) -> None:
+    count = len(face.positions)
+    numbers = [*face.landmarks.values(), int(face.triangles.min(initial=0)), int(face.triangles.max(initial=0))]
+    sound = (
+        face.positions.shape == (count, 3)
+        and np.isfinite(face.positions).all()
+        and face.triangles.ndim == 2
+        and face.triangles.shape[1] == 3
+        and face.part.shape == (count,)
+        and face.part.max(initial=0) < len(PARTS)
+        and all(0 <= number < count for number in numbers)
+        and all(unit.shape == (count, 3) and np.isfinite(unit).all() for unit in face.units.values())
+    )
+    if not sound:
+        raise UserFacingError(f"{path} is damaged: its arrays do not belong together.")
