@@ -1,0 +1,190 @@
+"""Draws a face: shaded under studio lights, as a wireframe, or its markers alone."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+import moderngl
+import numpy as np
+
+from core.face.face import Face
+from gpu.gl.camera import Camera
+from gpu.gl.complexion import (
+    SKIN,
+    SOCKET,
+    TEETH,
+    TONGUE,
+    brow_arcs,
+    lip_weights,
+    materials,
+    quad_diagonals,
+    rest_places,
+)
+from gpu.gl.markers import MarkerCloud
+from gpu.gl.normals import VertexNormals
+from gpu.gl.occlusion import openness
+from gpu.gl.program import compile_program
+
+# width of the texture that holds one byte a triangle
+_EDGE_ROW = 2048
+
+
+class Style(Enum):
+    """How a face is shown (figures 11 and 14 of the eFASE paper)."""
+
+    MARKERS = "markers"
+    WIREFRAME = "wireframe"
+    SHADED = "shaded"
+
+
+class FaceRenderer:
+    """A face and its markers in a GL context (3.3 core), on screen or off.
+
+    Made, used and released on the thread that owns the context; in a QOpenGLWidget make it in ``initializeGL`` and
+    draw in ``paintGL`` into ``ctx.detect_framebuffer(widget.defaultFramebufferObject())``.
+    """
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self._ctx = ctx
+        self._shaded = compile_program(ctx, "glsl/face.vert", "glsl/face.frag")
+        self._wire = compile_program(ctx, "glsl/face.vert", "glsl/wire.frag", "glsl/wire.geom")
+        self._backdrop = compile_program(ctx, "glsl/background.vert", "glsl/background.frag")
+        self._backdrop_array = ctx.vertex_array(self._backdrop, [])
+        self.markers = MarkerCloud(ctx)
+        self._face: Face | None = None
+        self._mesh: list = []
+
+    def set_face(self, face: Face, lips: np.ndarray | None = None) -> None:
+        """Show another face, at rest.
+
+        lips : how red each vertex is, 0..1, shape (n_vertices,); None: guessed from the landmarks
+        """
+        self._free_mesh()
+        rest = np.ascontiguousarray(face.positions, np.float32)
+        triangles = _facing_out(np.asarray(face.triangles, np.int32), rest)
+        self._normals = VertexNormals(triangles, rest)
+        normals = self._normals(rest)
+        material = materials(face)
+        surface = np.empty((len(rest), 3), np.float32)
+        surface[:, 0] = material
+        surface[:, 1] = lip_weights(face) if lips is None else lips
+        surface[:, 2] = self._openness(rest, normals, triangles, material)
+
+        ctx = self._ctx
+        self._positions = ctx.buffer(rest.tobytes(), dynamic=True)
+        self._normal_buffer = ctx.buffer(normals.tobytes(), dynamic=True)
+        places, surfaces = ctx.buffer(rest_places(face).tobytes()), ctx.buffer(surface.tobytes())
+        indices = ctx.buffer(triangles.tobytes())
+        inputs = [
+            (self._positions, "3f", "in_position"),
+            (self._normal_buffer, "3f", "in_normal"),
+            (places, "3f", "in_rest"),
+            (surfaces, "3f", "in_surface"),
+        ]
+        self._shaded_array = ctx.vertex_array(self._shaded, inputs, indices, skip_errors=True)
+        self._wire_array = ctx.vertex_array(self._wire, inputs, indices, skip_errors=True)
+        hidden = np.zeros((-(-max(len(triangles), 1) // _EDGE_ROW), _EDGE_ROW), np.uint8)
+        hidden.ravel()[: len(triangles)] = quad_diagonals(triangles, rest)
+        self._hidden_edges = ctx.texture((_EDGE_ROW, len(hidden)), 1, hidden.tobytes(), dtype="u1", alignment=1)
+        self._mesh = [self._shaded_array, self._wire_array, self._positions, self._normal_buffer]
+        self._mesh += [places, surfaces, indices, self._hidden_edges]
+
+        arcs, width_mm = brow_arcs(face)
+        self._shaded["brows"].write(arcs.tobytes())
+        self._shaded["brow_width_mm"].value = width_mm
+        self._face = face
+
+    @property
+    def face(self) -> Face | None:
+        """The face that is shown, or None."""
+        return self._face
+
+    def set_positions(self, positions: np.ndarray) -> None:
+        """Move the face's vertices; ``positions`` is float32, shape (n_vertices, 3), mm, world space."""
+        if self._face is None:
+            raise ValueError("set_face comes before set_positions")
+        if positions.shape != self._face.positions.shape:
+            raise ValueError(f"positions have shape {positions.shape}; the face has {self._face.positions.shape}")
+        positions = np.ascontiguousarray(positions, np.float32)
+        self._positions.write(positions)
+        self._normal_buffer.write(np.ascontiguousarray(self._normals(positions)))
+
+    def set_markers(
+        self, positions: np.ndarray, colours: np.ndarray | None = None, links: np.ndarray | None = None
+    ) -> None:
+        """Replace the markers; see `gpu.gl.markers.MarkerCloud.set_markers`."""
+        self.markers.set_markers(positions, colours, links)
+
+    def draw(
+        self,
+        framebuffer: moderngl.Framebuffer,
+        camera: Camera,
+        style: Style = Style.SHADED,
+        *,
+        show_markers: bool = False,
+    ) -> None:
+        """Clear the framebuffer and draw one picture that fills it; alpha is 1 everywhere.
+
+        Without a face, wireframe and shaded show the markers as well.
+        """
+        ctx = self._ctx
+        width, height = framebuffer.size
+        view, projection = camera.view(width / height), camera.projection(width / height)
+        framebuffer.use()
+        ctx.viewport = (0, 0, width, height)
+        ctx.enable_only(moderngl.NOTHING)
+        framebuffer.clear(0.07, 0.075, 0.085, 1.0, depth=1.0)
+        self._backdrop_array.render(moderngl.TRIANGLES, vertices=3)
+        has_mesh = self._face is not None and style is not Style.MARKERS
+        if has_mesh:
+            self._draw_mesh(view, projection, (width, height), style)
+        if show_markers or not has_mesh:
+            self.markers.draw(view, projection, (width, height))
+        ctx.enable_only(moderngl.NOTHING)
+
+    def release(self) -> None:
+        """Free all GL objects; the renderer is of no use afterwards."""
+        self._free_mesh()
+        self.markers.release()
+        for thing in (self._backdrop_array, self._backdrop, self._shaded, self._wire):
+            thing.release()
+
+    def _draw_mesh(self, view: np.ndarray, projection: np.ndarray, size_px: tuple[int, int], style: Style) -> None:
+        self._ctx.enable_only(moderngl.DEPTH_TEST)
+        program = self._shaded if style is Style.SHADED else self._wire
+        program["view"].write(np.ascontiguousarray(view.T, np.float32).tobytes())
+        program["projection"].write(np.ascontiguousarray(projection.T, np.float32).tobytes())
+        if style is Style.SHADED:
+            self._shaded_array.render()
+            return
+        program["viewport_px"].value = size_px
+        self._hidden_edges.use(0)
+        self._wire_array.render()
+
+    def _openness(
+        self, rest: np.ndarray, normals: np.ndarray, triangles: np.ndarray, material: np.ndarray
+    ) -> np.ndarray:
+        """Light on each vertex: of skin what its neighbours leave, inside the mouth less with depth."""
+        throws = (material == SKIN) | (material == SOCKET)
+        shadowing = triangles[throws[triangles].all(axis=1)]
+        light = openness(self._ctx, rest, normals, shadowing)
+        inside = np.isin(material, (TEETH, TONGUE))
+        if inside.any():
+            # the mouth is shut at rest, so depth behind the front teeth stands for the shadow of an open one
+            front_mm = rest[inside, 2].max()
+            light[inside] = np.clip(1.0 - (front_mm - rest[inside, 2]) / 42.0, 0.05, 1.0) ** 1.5
+        light[material == SOCKET] = np.clip(light[material == SOCKET], 0.10, 0.5)
+        return light
+
+    def _free_mesh(self) -> None:
+        for thing in self._mesh:
+            thing.release()
+        self._mesh = []
+        self._face = None
+
+
+def _facing_out(triangles: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    """Return the triangles, all turned round if the mesh as a whole is inside out (a negative volume)."""
+    a, b, c = (positions[triangles[:, i]].astype(float) - positions.mean(axis=0) for i in range(3))
+    volume = np.einsum("ij,ij->", a, np.cross(b, c))
+    return np.ascontiguousarray(triangles[:, ::-1] if volume < 0 else triangles)

@@ -1,0 +1,22 @@
+#version 330 core
+// The wireframe: smooth lines on a quiet, dimly lit surface that hides what lies behind it.
+#include "light.glsl"
+
+in vec3 wire_normal;
+noperspective in vec3 edge_px;
+flat in float wire_material;
+
+out vec4 colour;
+
+void main() {
+    vec3 n = normalize(wire_normal);
+    if (!gl_FrontFacing) n = -n;
+    float light = max(dot(n, KEY_DIRECTION), 0.0) + 0.35 * max(dot(n, FILL_DIRECTION), 0.0);
+    float facing = abs(n.z);
+    vec3 surface = mix(vec3(0.055, 0.060, 0.072), vec3(0.115, 0.125, 0.150), light);
+    vec3 line = mix(vec3(0.26, 0.36, 0.46), vec3(0.56, 0.76, 0.90), facing);
+    if (wire_material > 0.5) line = mix(line, vec3(0.92, 0.74, 0.50), 0.55);
+    if (!gl_FrontFacing) line *= 0.35;
+    float nearest = min(edge_px.x, min(edge_px.y, edge_px.z));
+    colour = vec4(mix(line, surface, smoothstep(0.35, 1.25, nearest)), 1.0);
+}
