@@ -1,0 +1,243 @@
+"""The motion database: one portable HDF5 file, and what it looks like when it is open."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from core.errors import UserFacingError
+from core.manifold.isomap import PhonemeMap
+from core.motion.marker_set import MarkerSet
+from core.motion.node import NodeTable
+from core.motion.pca import MotionPca
+from core.search.weights import SearchWeights
+from core.speech.transcript import PhonemeUtterance, Transcript, WordUtterance
+
+FORMAT = "efase-motion-database"
+VERSION = (1, 0)
+REMAKE = "Remake it with `efase build`, or open another one."
+
+
+@dataclass(frozen=True)
+class CapturedSentence:
+    """One sentence of the database: where its frames are, and what is said in it."""
+
+    name: str
+    emotion: str
+    text: str
+    start_frame: int
+    stop_frame: int
+    transcript: Transcript
+
+
+@dataclass(frozen=True)
+class MotionDatabase:
+    """An open motion database; nothing in it changes.
+
+    name, synthetic : as in the corpus it was built from
+    rate_hz : frames a second
+    markers : the marker set with its rest pose
+    pca : the space of the frames
+    frames : float32, shape (n_frames, n_dims), PCA coefficients of all sentences, one after the other
+    head_rotation : float32, shape (n_frames, 3), rotation vectors, radians; head_translation: the same, mm
+    nodes : the motion nodes
+    sentences : in the order of their frames
+    maps : phoneme name to its Isomap
+    weights : default search weights of this database
+    held_out : sentence names by split
+    report : what was done to the data, sentence by sentence of prose
+    content_hash : hex digest of the captured content; weights, maps and curation are not part of it
+    path : the file, or None when it was never stored
+    """
+
+    name: str
+    synthetic: bool
+    rate_hz: float
+    markers: MarkerSet
+    pca: MotionPca
+    frames: np.ndarray
+    head_rotation: np.ndarray
+    head_translation: np.ndarray
+    nodes: NodeTable
+    sentences: tuple[CapturedSentence, ...]
+    maps: Mapping[str, PhonemeMap]
+    weights: SearchWeights
+    content_hash: str
+    held_out: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    report: Mapping[str, object] = field(default_factory=dict)
+    path: Path | None = None
+
+    @cached_property
+    def rest_coefficients(self) -> np.ndarray:
+        """The rest pose in PCA space, float64, shape (n_dims,)."""
+        return self.pca.coefficients(self.markers.rest)
+
+    def node_frames(self, row: int) -> np.ndarray:
+        """Return the coefficients of a node's frames, float32, shape (n_frames of the node, n_dims)."""
+        return self.frames[self.nodes.start[row] : self.nodes.stop[row]]
+
+    def sentence(self, name: str) -> CapturedSentence:
+        """Return a sentence by name; raises `UserFacingError` when there is none."""
+        for sentence in self.sentences:
+            if sentence.name == name:
+                return sentence
+        raise UserFacingError(f"The database '{self.name}' has no sentence '{name}'.")
+
+    def audio_bytes(self, sentence: str) -> bytes | None:
+        """Return the FLAC file of a sentence's sound, or None if it was built without."""
+        import h5py
+
+        if self.path is None:
+            return None
+        with h5py.File(self.path, "r") as file:
+            stored = file.get(f"audio/{sentence}")
+            return None if stored is None else bytes(stored[()])
+
+    def summary(self) -> dict[str, object]:
+        """Return what `efase info` prints: counts, coverage, rate, content hash."""
+        phonemes, counts = np.unique(self.nodes.phoneme, return_counts=True)
+        from core.speech.emotion import EMOTIONS
+        from core.speech.phoneme import PHONEMES
+
+        emotions = [s.emotion for s in self.sentences]
+        return {
+            "name": self.name,
+            "synthetic": self.synthetic,
+            "path": None if self.path is None else str(self.path),
+            "nodes": len(self.nodes),
+            "frames": len(self.frames),
+            "seconds": round(len(self.frames) / self.rate_hz, 3),
+            "phonemes": {PHONEMES[p]: int(c) for p, c in zip(phonemes, counts)},
+            "emotions": {e: emotions.count(e) for e in EMOTIONS if e in emotions},
+            "sentences": len(self.sentences),
+            "pca_dims": self.pca.n_dims,
+            "pca_coverage": self.pca.coverage,
+            "markers": len(self.markers),
+            "rate_hz": self.rate_hz,
+            "maps": {phone: m.summary() for phone, m in self.maps.items()},
+            "weights": self.weights.as_dict(),
+            "held_out": {split: len(names) for split, names in self.held_out.items()},
+            "content_hash": self.content_hash,
+            "report": dict(self.report),
+        }
+
+
+def open_database(path: Path) -> MotionDatabase:
+    """Open a database file.
+
+    Raises `UserFacingError` when it is missing, not an eFASE database, from a newer major version, or damaged.
+    """
+    import h5py
+
+    path = Path(path)
+    if not path.is_file():
+        raise UserFacingError(f"There is no motion database at '{path}'.", "Build one with `efase build`.")
+    try:
+        with h5py.File(path, "r") as file:
+            _check_version(file, path)
+            return _read(file, path)
+    except (OSError, KeyError, ValueError, IndexError, TypeError, AttributeError) as error:
+        if isinstance(error, OSError) and "signature" in str(error):
+            raise UserFacingError(f"'{path}' is not a motion database.", REMAKE) from error
+        raise UserFacingError(f"The motion database '{path}' is damaged ({_one_line(error)}).", REMAKE) from error
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(str(error).split())[:160]
+
+
+def _check_version(file, path: Path) -> None:
+    if file.attrs.get("format") != FORMAT:
+        raise UserFacingError(f"'{path}' is an HDF5 file, but not a motion database.", REMAKE)
+    major, minor = int(file.attrs["version_major"]), int(file.attrs["version_minor"])
+    if major > VERSION[0]:
+        raise UserFacingError(
+            f"'{path}' was made by a newer eFASE (database version {major}.{minor}; this one reads up to "
+            f"{VERSION[0]}.x).",
+            "Update the workstation to open it.",
+        )
+
+
+def _read(file, path: Path) -> MotionDatabase:
+    markers = MarkerSet.from_json(file["markers"].attrs["json"], file["markers/rest"][()])
+    pca_group = file["pca"]
+    pca = MotionPca(pca_group["mean"][()], pca_group["basis"][()], pca_group["variance"][()],
+                    float(pca_group.attrs["coverage"]))  # fmt: skip
+    frames = file["frames/coefficients"][()]
+    sentences = tuple(_sentence(entry) for entry in json.loads(file["sentences"][()]))
+    columns = {name: file[f"nodes/{name}"][()] for name in NodeTable.COLUMNS}
+    nodes = NodeTable(**columns, sentence_names=tuple(s.name for s in sentences))
+    if len(nodes) and (nodes.stop.max() > len(frames) or nodes.start.min() < 0):
+        raise ValueError("motion nodes lie beyond the frames")
+    maps = {phone: PhonemeMap.read(group) for phone, group in file["maps"].items()}
+    return MotionDatabase(
+        name=str(file.attrs["name"]),
+        synthetic=bool(file.attrs["synthetic"]),
+        rate_hz=float(file.attrs["rate_hz"]),
+        markers=markers,
+        pca=pca,
+        frames=frames,
+        head_rotation=file["frames/head_rotation"][()],
+        head_translation=file["frames/head_translation"][()],
+        nodes=nodes,
+        sentences=sentences,
+        maps=maps,
+        weights=SearchWeights.from_dict(json.loads(file.attrs["weights"])),
+        content_hash=str(file.attrs["content_hash"]),
+        held_out={k: tuple(v) for k, v in json.loads(file.attrs["held_out"]).items()},
+        report=json.loads(file.attrs["report"]),
+        path=path,
+    )
+
+
+def write_database(database: MotionDatabase, path: Path, audio: Mapping[str, bytes]) -> None:
+    """Store ``database`` and the FLAC sound of its sentences at ``path``; raises `OSError` if the disk refuses."""
+    import h5py
+
+    with h5py.File(path, "w", libver=("v110", "v110")) as file:
+        file.attrs.update(
+            format=FORMAT, version_major=VERSION[0], version_minor=VERSION[1], name=database.name,
+            synthetic=database.synthetic, rate_hz=database.rate_hz, content_hash=database.content_hash,
+            weights=json.dumps(database.weights.as_dict()), held_out=json.dumps(dict(database.held_out)),
+            report=json.dumps(dict(database.report)),
+        )  # fmt: skip
+        file.create_dataset("markers/rest", data=database.markers.rest)
+        file["markers"].attrs["json"] = database.markers.to_json()
+        for name in ("mean", "basis", "variance"):
+            file.create_dataset(f"pca/{name}", data=getattr(database.pca, name))
+        file["pca"].attrs["coverage"] = database.pca.coverage
+        file.create_dataset("frames/coefficients", data=database.frames)
+        file.create_dataset("frames/head_rotation", data=database.head_rotation)
+        file.create_dataset("frames/head_translation", data=database.head_translation)
+        for name in NodeTable.COLUMNS:
+            file.create_dataset(f"nodes/{name}", data=getattr(database.nodes, name))
+        file.create_dataset("sentences", data=json.dumps([_sentence_entry(s) for s in database.sentences]))
+        file.create_group("maps")
+        for phone, phoneme_map in database.maps.items():
+            phoneme_map.write(file.create_group(f"maps/{phone}"))
+        for sentence, flac in audio.items():
+            file.create_dataset(f"audio/{sentence}", data=np.frombuffer(flac, np.uint8))
+
+
+def _sentence_entry(sentence: CapturedSentence) -> dict[str, object]:
+    transcript = sentence.transcript
+    return {
+        "name": sentence.name, "emotion": sentence.emotion, "text": sentence.text,
+        "frames": [sentence.start_frame, sentence.stop_frame], "duration_s": transcript.duration_s,
+        "phonemes": [[u.phone, u.start_s, u.end_s] for u in transcript.phonemes],
+        "words": [[w.word, w.start_s, w.end_s] for w in transcript.words],
+    }  # fmt: skip
+
+
+def _sentence(entry: dict) -> CapturedSentence:
+    transcript = Transcript(
+        tuple(PhonemeUtterance(*u) for u in entry["phonemes"]),
+        tuple(WordUtterance(*w) for w in entry["words"]),
+        entry["duration_s"],
+    )
+    return CapturedSentence(entry["name"], entry["emotion"], entry["text"], *entry["frames"], transcript)

@@ -1,0 +1,81 @@
+"""A folder of points tracked in video, laid out like the GRID set: ``tracks.npz``, sound and TextGrids.
+
+The steps are those of the set's own README: a similarity fit on the points of forehead and temples, the outer eye
+corners 90 mm apart, y and z flipped so that y is up and z towards the camera.
+"""
+
+from __future__ import annotations
+
+import zipfile
+from importlib.resources import files
+from pathlib import Path
+
+import numpy as np
+
+from core.errors import UserFacingError
+from core.media.audio import load_audio
+from core.motion.corpus import Corpus
+from core.motion.marker_table import parse_marker_table
+from core.motion.recording import Recording
+from core.progress import SILENT, Progress
+from core.speech.transcript_files import read_transcript
+
+OUTER_EYE_MM = 90.0
+_MOST_FRAMES = 2_000_000  # twice the paper's 135 minutes; more is refused before memory is asked for
+_ARRAYS = ("xyz64", "start", "clips", "landmark_index", "fps")
+
+
+def is_tracked_points_folder(folder: Path) -> bool:
+    """Tell whether ``folder`` is laid out like the GRID set."""
+    return (folder / "tracks.npz").is_file()
+
+
+def read_tracked_points(folder: Path, progress: Progress = SILENT) -> Corpus:
+    """Read the folder as a corpus of neutral speech; raises `UserFacingError` for what is missing or broken."""
+    path = folder / "tracks.npz"
+    arrays = _load(path)
+    xyz = arrays["xyz64"]
+    start, clips = arrays["start"].astype(int), [str(clip) for clip in arrays["clips"]]
+    sane = xyz.ndim == 3 and xyz.shape[1:] == (len(arrays["landmark_index"]), 3) and len(start) == len(clips) + 1
+    if not sane or start[0] != 0 or start[-1] != len(xyz) or (np.diff(start) <= 0).any():
+        raise UserFacingError(f"The arrays of '{path}' do not fit each other.")
+    rate_hz = float(arrays["fps"])
+    if not 5.0 <= rate_hz <= 1000.0:
+        raise UserFacingError(f"'{path}' states {rate_hz} frames a second.")
+    names = tuple(f"MP{int(number):03d}" for number in arrays["landmark_index"])
+    table_file = files("resources") / "markers" / "mediapipe-148.csv"
+    table = parse_marker_table(table_file.read_text(encoding="utf-8"), "mediapipe-148.csv")
+    strangers = set(table.kept) - set(names)
+    if strangers:
+        raise UserFacingError(f"'{path}' lacks the tracked point {min(strangers)}.")
+
+    recordings = []
+    for s, clip in enumerate(clips):
+        progress.step(s / len(clips), f"reading {clip}")
+        audio_path = next((p for p in (folder / "audio" / f"{clip}{x}" for x in (".flac", ".wav")) if p.is_file()), None)
+        if audio_path is None:
+            raise UserFacingError(f"'{folder}' has no sound for the clip '{clip}'.")
+        transcript = read_transcript(folder / "textgrid" / f"{clip}.TextGrid", load_audio(audio_path).duration_s)
+        pixels = xyz[start[s] : start[s + 1]].astype(np.float32) / 64.0
+        pixels[..., 1:] *= -1.0
+        text = " ".join(word.word for word in transcript.words if word.word)
+        recordings.append(Recording(clip, "neutral", pixels, names, rate_hz, transcript, text, audio_path))
+    return Corpus(folder.resolve().name, recordings, table.kept, table.groups, table.landmarks, with_scale=True,
+                  outer_eye_mm=OUTER_EYE_MM)  # fmt: skip
+
+
+def _load(path: Path) -> dict[str, np.ndarray]:
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            missing = [name for name in _ARRAYS if name not in archive.files]
+            if missing:
+                raise UserFacingError(f"'{path}' has no array '{missing[0]}'.")
+            with archive.zip.open("xyz64.npy") as member:
+                version = np.lib.format.read_magic(member)
+                header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+                shape, _, _ = header(member)
+            if shape[0] > _MOST_FRAMES:
+                raise UserFacingError(f"'{path}' holds {shape[0]} frames; at most {_MOST_FRAMES} are read.")
+            return {name: archive[name] for name in _ARRAYS}
+    except (OSError, ValueError, zipfile.BadZipFile, EOFError, KeyError) as error:
+        raise UserFacingError(f"'{path}' is not a readable track file.") from error

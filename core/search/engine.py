@@ -1,0 +1,112 @@
+"""The constrained search as an engine: aligned speech in, marker motion out."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from core.motion.database import MotionDatabase
+from core.progress import SILENT, Progress
+from core.search.best_path import MotionPath, find_path
+from core.search.compute import SearchKernels, transition_matrix
+from core.search.constraints import SearchRequest
+from core.search.terms import TransitionTerms
+from core.search.weights import SearchWeights
+from core.speech.emotion import EmotionModifier, emotion_weights
+from core.speech.phoneme import PHONEME_INDEX
+from core.speech.transcript import Transcript
+from core.synthesis.concatenate import SlotFrames, concatenate
+from core.synthesis.marker_motion import MarkerMotion
+from core.synthesis.silence import regenerate_silence
+from core.synthesis.smoothing import smooth_joins
+
+
+@dataclass(frozen=True)
+class SpeechInput:
+    """What an engine animates.
+
+    transcript : aligned phonemes
+    modifiers : emotion spans (soft)
+    pins : slot to public node name (hard); only the search knows them
+    removed : public names of nodes that must not be used
+    """
+
+    transcript: Transcript
+    modifiers: Sequence[EmotionModifier] = ()
+    pins: Mapping[int, str] = field(default_factory=dict)
+    removed: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
+class SearchAnswer:
+    """Motion, and the path that it came from."""
+
+    motion: MarkerMotion
+    path: MotionPath
+    slots: SlotFrames
+    search_s: float
+    synthesis_s: float
+
+
+class SearchEngine:
+    """Constrained search over a motion database (Deng and Neumann 2008, sections 6.2 and 7.2).
+
+    The transition matrix is made at first use and kept: 4 n_nodes² bytes.
+    """
+
+    name = "search"
+
+    def __init__(self, database: MotionDatabase, kernels: SearchKernels, weights: SearchWeights | None = None) -> None:
+        self.database = database
+        self.kernels = kernels
+        self.weights = weights or database.weights
+        self._transition: np.ndarray | None = None
+
+    def prepare(self, progress: Progress = SILENT) -> np.ndarray:
+        """Price all transitions, once, and hand them to the compute backend; returns the matrix."""
+        if self._transition is None:
+            terms = TransitionTerms(self.database.frames, self.database.nodes, self.database.rate_hz)
+            transition = transition_matrix(terms, self.weights, progress)
+            self.kernels.prepare(transition)
+            self._transition = transition
+        return self._transition
+
+    def request(self, speech: SpeechInput) -> SearchRequest:
+        """Translate names to rows; raises `UserFacingError` for a node that the database does not have."""
+        utterances = speech.transcript.phonemes
+        nodes = self.database.nodes
+        return SearchRequest(
+            phonemes=np.array([PHONEME_INDEX[u.phone] for u in utterances]),
+            emotions=emotion_weights([u.start_s for u in utterances], [u.end_s for u in utterances], speech.modifiers),
+            pins={slot: nodes.row(name) for slot, name in speech.pins.items()},
+            removed=frozenset(nodes.row(name) for name in speech.removed),
+        )
+
+    def synthesise(self, speech: SpeechInput, progress: Progress = SILENT) -> SearchAnswer:
+        """Find the best path and turn it into marker motion at the database's rate."""
+        request = self.request(speech)
+        transition = self.prepare(progress.part(0.0, 0.5))
+        began = time.perf_counter()
+        path = find_path(
+            request, self.database.nodes, transition, self.weights, self.kernels, progress.part(0.5, 0.9)
+        )
+        searched = time.perf_counter()
+        slots = SlotFrames.of(
+            [u.start_s for u in speech.transcript.phonemes],
+            [u.end_s for u in speech.transcript.phonemes],
+            self.database.rate_hz,
+        )
+        motion = self.motion_of(path.nodes, request.phonemes, slots)
+        progress.step(1.0, "motion made")
+        return SearchAnswer(motion, path, slots, searched - began, time.perf_counter() - searched)
+
+    def motion_of(self, path: np.ndarray, phonemes: np.ndarray, slots: SlotFrames) -> MarkerMotion:
+        """Concatenate, warp, smooth, regenerate silence, and go back to markers (section 7.2)."""
+        database = self.database
+        motion = concatenate(path, slots, database.frames, database.nodes)
+        motion = smooth_joins(motion, path, phonemes, slots, database.nodes)
+        motion = regenerate_silence(motion, phonemes, slots, database.rest_coefficients, database.rate_hz)
+        return MarkerMotion(database.pca.positions(motion).astype(np.float32), database.rate_hz, database.markers)

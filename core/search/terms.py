@@ -1,0 +1,183 @@
+"""The terms of the search's cost function, for all pairs of motion nodes at once.
+
+Deng and Neumann 2008, section 6.2, tables 1 and 2, equations 5 to 9.
+
+The marker basis is orthonormal, so a distance between poses is a distance between their PCA coefficients, and every
+pairwise term is a matrix product: nothing here loops over pairs of nodes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.motion.node import NIL, NodeTable
+from core.search.weights import SearchWeights
+from core.speech.phoneme import PAU, PHONEME_INDEX, VISEME_OF_PHONEME
+
+
+@dataclass(frozen=True)
+class TransitionBlock:
+    """Weight-independent transition terms from all nodes n into the nodes m of one block.
+
+    targets : int, shape (n_block,), the rows m
+    position_gap, velocity_gap, smoothing : float64, shape (n_block, n_nodes); mm², (mm/s)², mm²/s³
+    viseme_differs : bool, same shape; viseme(n) is not viseme(pre(m))
+    """
+
+    targets: np.ndarray
+    position_gap: np.ndarray
+    velocity_gap: np.ndarray
+    smoothing: np.ndarray
+    viseme_differs: np.ndarray
+
+
+class TransitionTerms:
+    """PGap, VGap and DSC between all motion nodes of a database.
+
+    frames : shape (n_frames, n_dims), PCA coefficients in mm
+    nodes : the motion nodes; velocities are central differences within the captured sentence
+    """
+
+    def __init__(self, frames: np.ndarray, nodes: NodeTable, rate_hz: float) -> None:
+        self.nodes = nodes
+        self.rate_hz = rate_hz
+        self._frames = frames
+        frames = np.asarray(frames, float)
+        last = nodes.stop - 1
+        self._first_pose, self._last_pose = frames[nodes.start], frames[last]
+        self._first_velocity = self._velocity(frames, nodes.start)
+        self._last_velocity = self._velocity(frames, last)
+        self._viseme = nodes.viseme
+
+    def _velocity(self, frames: np.ndarray, at: np.ndarray) -> np.ndarray:
+        """mm/s at the frames ``at``; one-sided at the ends of a sentence."""
+        sentence_of_node = self.nodes.sentence
+        n_sentences = len(self.nodes.sentence_names)
+        first = np.full(n_sentences, np.iinfo(np.int64).max)
+        stop = np.zeros(n_sentences, np.int64)
+        np.minimum.at(first, sentence_of_node, self.nodes.start)
+        np.maximum.at(stop, sentence_of_node, self.nodes.stop)
+        before = np.maximum(at - 1, first[sentence_of_node])
+        after = np.minimum(at + 1, stop[sentence_of_node] - 1)
+        span_s = np.maximum(after - before, 1) / self.rate_hz
+        return (frames[after] - frames[before]) / span_s[:, None]
+
+    def blocks(self, targets: np.ndarray | None = None, most_bytes: int = 64 << 20) -> Iterator[TransitionBlock]:
+        """Yield the terms into ``targets`` (default all nodes with a predecessor), grouped by predecessor length.
+
+        A block's largest matrix stays near ``most_bytes``.
+        """
+        pre = self.nodes.pre
+        if targets is None:
+            targets = np.arange(len(self.nodes))
+        targets = targets[pre[targets] != NIL]
+        lengths = np.maximum(self.nodes.n_frames[pre[targets]], 3)
+        most_rows = max(1, most_bytes // (8 * len(self.nodes)))
+        for length in np.unique(lengths):
+            of_length = targets[lengths == length]
+            fading_out = self._curvature_of_warped(np.arange(len(self.nodes)), int(length), fading_out=True)
+            out_energy = (fading_out**2).sum(axis=1)
+            for first in range(0, len(of_length), most_rows):
+                m = of_length[first : first + most_rows]
+                fading_in = self._curvature_of_warped(pre[m], int(length), fading_out=False)
+                smoothing = (fading_in**2).sum(axis=1)[:, None] + out_energy[None] + 2.0 * fading_in @ fading_out.T
+                yield TransitionBlock(
+                    m,
+                    _squared_distances(self._first_pose[m], self._last_pose),
+                    _squared_distances(self._first_velocity[m], self._last_velocity),
+                    smoothing.clip(0.0),
+                    self._viseme[pre[m]][:, None] != self._viseme[None],
+                )
+
+    def _curvature_of_warped(self, rows: np.ndarray, length: int, fading_out: bool) -> np.ndarray:
+        """Second derivative of nodes warped to ``length`` frames and faded, as one vector a node.
+
+        DSC (equation 6) of nodes a and b is the squared length of the sum of a's vector, fading out, and b's, fading
+        in: the blend, the warp and the derivative are linear. t in seconds; the integral is a sum over frames.
+
+        returns : float64, shape (n_rows, (length - 2) * n_dims)
+        """
+        second_difference = np.zeros((length - 2, length))
+        inner = np.arange(length - 2)
+        second_difference[inner, inner] = second_difference[inner, inner + 2] = 1.0
+        second_difference[inner, inner + 1] = -2.0
+        ramp = np.linspace(1.0, 0.0, length)
+        faded = second_difference * (ramp if fading_out else 1.0 - ramp) * self.rate_hz**1.5
+        n_dims = self._frames.shape[1]
+        vectors = np.zeros((len(rows), (length - 2) * n_dims))
+        own = self.nodes.n_frames[rows]
+        for n_own in np.unique(own):
+            where = np.flatnonzero(own == n_own)
+            span = self.nodes.start[rows[where], None] + np.arange(n_own)
+            poses = np.asarray(self._frames[span], float)
+            bent = np.einsum("lf,nfd->nld", faded @ warp_matrix(int(n_own), length), poses, optimize=True)
+            vectors[where] = bent.reshape(len(where), -1)
+        return vectors
+
+
+def warp_matrix(n_frames: int, length: int) -> np.ndarray:
+    """Linear time-warp of ``n_frames`` to ``length`` frames, ends on ends; float64, shape (length, n_frames)."""
+    matrix = np.zeros((length, n_frames))
+    place = np.linspace(0.0, n_frames - 1.0, length) if length > 1 else np.array([(n_frames - 1) / 2.0])
+    low = np.minimum(place.astype(int), max(n_frames - 2, 0))
+    share = place - low
+    rows = np.arange(length)
+    matrix[rows, low] += 1.0 - share
+    matrix[rows, np.minimum(low + 1, n_frames - 1)] += share
+    return matrix
+
+
+def _squared_distances(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    squared = (a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1)[None] - 2.0 * a @ b.T
+    return squared.clip(0.0)
+
+
+def observation_costs(phonemes: np.ndarray, nodes: NodeTable, weights: SearchWeights) -> np.ndarray:
+    """OC of table 2: 0 for the phone itself and for silence, discounted within the viseme class.
+
+    phonemes : int, shape (n_slots,), indices into `PHONEMES`
+    returns : float64, shape (n_slots, n_nodes)
+    """
+    visemes = np.asarray(VISEME_OF_PHONEME)
+    wanted = np.asarray(phonemes)[:, None]
+    mismatch = weights.alpha5 * weights.pnt
+    cost = np.where(visemes[wanted] == nodes.viseme[None], weights.alpha4 * mismatch, mismatch)
+    cost[np.equal(wanted, nodes.phoneme[None]) | (wanted == PHONEME_INDEX[PAU])] = 0.0
+    return cost
+
+
+def emotion_mismatch_penalties(emotions: np.ndarray, nodes: NodeTable, weights: SearchWeights) -> np.ndarray:
+    """EMP of equation 5, for mixes: ``α6 · PNT · (1 - w_emotion(n))``.
+
+    emotions : shape (n_slots, n_emotions), rows sum to 1
+    returns : float64, shape (n_slots, n_nodes)
+    """
+    return weights.alpha6 * weights.pnt * (1.0 - np.asarray(emotions, float)[:, nodes.emotion])
+
+
+def default_weights(frames: np.ndarray, nodes: NodeTable, rate_hz: float, seed: int = 2008) -> SearchWeights:
+    """Untuned weights that let no term drown another, from medians over random pairs of this database.
+
+    α3 = median VGap / median PGap, PNT = median PVC, α2 = median PVC / median DSC / 4; the other weights are
+    dimensionless and fixed. A database of one node, or one that never moves, gets 1 for what cannot be measured.
+    """
+    rng = np.random.default_rng(seed)
+    terms = TransitionTerms(frames, nodes, rate_hz)
+    # a few hundred targets against all nodes: a random sample of pairs that costs a few matrix products
+    with_pre = np.flatnonzero(nodes.pre != NIL)
+    sample = rng.choice(with_pre, min(300, len(with_pre)), replace=False)
+    blocks = list(terms.blocks(np.sort(sample)))
+    if not blocks:
+        return SearchWeights(pnt=1.0)
+
+    def median(values: list[np.ndarray]) -> float:
+        return float(np.median(np.concatenate([v.ravel() for v in values]))) or 1.0
+
+    position = median([b.position_gap for b in blocks])
+    velocity = median([b.velocity_gap for b in blocks])
+    alpha3 = velocity / position
+    pvc = median([alpha3 * b.position_gap + b.velocity_gap for b in blocks])
+    return SearchWeights(pnt=pvc, alpha2=pvc / median([b.smoothing for b in blocks]) / 4.0, alpha3=alpha3)

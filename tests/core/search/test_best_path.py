@@ -1,0 +1,134 @@
+"""The search against enumeration of every path."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from core.errors import UserFacingError
+from core.motion.node import NIL
+from core.search.best_path import find_path
+from core.search.compute import NumpyKernels, transition_matrix
+from core.search.constraints import SearchRequest
+from core.search.terms import TransitionTerms, default_weights, emotion_mismatch_penalties, observation_costs
+from core.speech.phoneme import PHONEMES
+
+
+def prepared(frames, nodes):
+    weights = default_weights(frames, nodes, 120.0)
+    matrix = transition_matrix(TransitionTerms(frames, nodes, 120.0), weights)
+    kernels = NumpyKernels()
+    kernels.prepare(matrix)
+    return weights, matrix, kernels
+
+
+def random_request(rng, nodes, n_slots, n_pins=0, n_removed=0):
+    rows = rng.permutation(len(nodes))
+    slots = rng.choice(n_slots, n_pins, replace=False)
+    return SearchRequest(
+        phonemes=np.array([PHONEMES.index(p) for p in rng.choice(["aa", "b", "k", "pau", "s"], n_slots)]),
+        emotions=rng.dirichlet(np.ones(4), n_slots),
+        pins={int(slot): int(row) for slot, row in zip(slots, rows)},
+        removed=frozenset(rows[n_pins : n_pins + n_removed].tolist()),
+    )
+
+
+def enumerated(request, nodes, matrix, weights):
+    """Least cost over all paths, one by one."""
+    local = observation_costs(request.phonemes, nodes, weights)
+    local = local + emotion_mismatch_penalties(request.emotions, nodes, weights)
+    candidates = [
+        [request.pins[p]] if p in request.pins else [n for n in range(len(nodes)) if n not in request.removed]
+        for p in range(request.n_slots)
+    ]
+    costs = {
+        path: sum(local[p, n] for p, n in enumerate(path))
+        + sum(float(matrix[m, n]) for n, m in itertools.pairwise(path))
+        for path in itertools.product(*candidates)
+    }
+    return min(costs.values()), costs
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_equals_enumeration(random_motion, seed):
+    rng = np.random.default_rng(seed)
+    frames, nodes = random_motion(seed, n_sentences=2, phones_each=5)
+    weights, matrix, kernels = prepared(frames, nodes)
+    request = random_request(rng, nodes, n_slots=4, n_pins=seed % 3, n_removed=seed % 2)
+    answer = find_path(request, nodes, matrix, weights, kernels)
+    least, costs = enumerated(request, nodes, matrix, weights)
+    assert answer.cost == pytest.approx(least, rel=1e-12)
+    assert costs[tuple(answer.nodes.tolist())] == pytest.approx(least, rel=1e-12)
+
+
+def test_a_captured_sentence_is_found_again_for_free(random_motion):
+    frames, nodes = random_motion(7, phones="aa b k iy s")
+    weights, matrix, kernels = prepared(frames, nodes)
+    rows = np.flatnonzero(nodes.sentence == 2)
+    emotions = np.zeros((len(rows), 4))
+    emotions[:, nodes.emotion[rows[0]]] = 1.0
+    answer = find_path(SearchRequest(nodes.phoneme[rows], emotions), nodes, matrix, weights, kernels)
+    assert answer.cost == 0.0
+    assert answer.nodes.tolist() == rows.tolist()
+
+
+def test_pins_hold_everywhere_the_first_slot_included(random_motion):
+    frames, nodes = random_motion(8)
+    weights, matrix, kernels = prepared(frames, nodes)
+    for slot in range(5):
+        request = SearchRequest(np.zeros(5, int), np.eye(4)[[0] * 5], {slot: 3})
+        assert find_path(request, nodes, matrix, weights, kernels).nodes[slot] == 3
+
+
+def test_removed_nodes_are_never_used(random_motion):
+    frames, nodes = random_motion(9)
+    weights, matrix, kernels = prepared(frames, nodes)
+    removed: set[int] = set()
+    request = random_request(np.random.default_rng(9), nodes, 6)
+    while len(removed) < len(nodes) - 1:
+        answer = find_path(
+            SearchRequest(request.phonemes, request.emotions, {}, frozenset(removed)), nodes, matrix, weights, kernels
+        )
+        assert not removed & set(answer.nodes.tolist())
+        removed.add(int(answer.nodes[0]))
+
+
+def test_equal_costs_go_to_the_lowest_row(random_motion):
+    frames, nodes = random_motion(10)
+    frames[:] = 0.0
+    weights, matrix, kernels = prepared(frames, nodes)
+    silence = SearchRequest(np.full(3, PHONEMES.index("pau")), np.full((3, 4), 0.25))
+    answer = find_path(silence, nodes, matrix, weights, kernels)
+    local = 1.5 * weights.pnt * 3
+    assert answer.cost == pytest.approx(local)
+    best = answer.nodes.tolist()
+    for p in range(3):
+        for lower in range(best[p]):
+            other = [*best[:p], lower, *best[p + 1 :]]
+            if other[p + 1 :] != best[p + 1 :]:
+                continue
+            suffix_same = sum(float(matrix[m, n]) for n, m in itertools.pairwise(other))
+            assert suffix_same > 0 or p < 2
+
+
+def test_infeasible_requests_name_the_slot(random_motion):
+    frames, nodes = random_motion(11)
+    weights, matrix, kernels = prepared(frames, nodes)
+    phonemes, emotions = np.zeros(3, int), np.eye(4)[[0] * 3]
+    cases = [
+        (SearchRequest(phonemes, emotions, {1: 4}, frozenset({4})), "Slot 1"),
+        (SearchRequest(phonemes, emotions, {7: 4}), "slot 7"),
+        (SearchRequest(phonemes, emotions, {}, frozenset(range(len(nodes)))), "Every motion node"),
+        (SearchRequest(phonemes[:0], emotions[:0]), "no phoneme"),
+    ]
+    for request, words in cases:
+        with pytest.raises(UserFacingError, match=words):
+            find_path(request, nodes, matrix, weights, kernels)
+
+
+def test_a_chain_needs_a_predecessor(random_motion):
+    _, nodes = random_motion(12)
+    for n in range(len(nodes)):
+        if nodes.pre[n] != NIL:
+            assert nodes.suc[nodes.pre[n]] == n
+            assert nodes.stop[nodes.pre[n]] == nodes.start[n]
