@@ -20,7 +20,7 @@ LONGEST_S = 3600.0
 RATES_HZ = (4_000, 768_000)
 _BLOCK_FRAMES = 1 << 16
 
-# What libsndfile's log says of a file that lost its end; streamed WAVs promise 2**31 bytes or more, and that is no loss.
+# What libsndfile's log says of a file that lost its end. A streamed WAV promises 2**31 bytes or more: that is no loss.
 _PROMISED_BYTES = re.compile(r"^\s*(?:data|SSND) : (\d+) \(should be (\d+)\)", re.MULTILINE)
 _STREAMED_BYTES = 0x7FFF0000
 _PADDING_BYTES = 64
