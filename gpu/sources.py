@@ -20,7 +20,7 @@ _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 # GLSL knows files by number only, and Mesa 22 forgets that number in most messages: so the line number carries
 # the file as well, as file * _LINES_A_FILE + line.
 _LINES_A_FILE = 10_000
-# Where compilers put the line: Mesa ``0:12(3): error``, NVIDIA ``0(12) : error``, AMD, Intel, Apple ``ERROR: 0:12: ...``
+# Where compilers put the line: Mesa ``0:12(3): error``, NVIDIA ``0(12) : error``, others ``ERROR: 0:12: ...``
 _GLSL_PLACES = (
     re.compile(r"^\s*\d+:(\d+)\(\d+\)\s*:"),
     re.compile(r"^\s*\d+\((\d+)\)\s*:"),
