@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
-import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from core.errors import UserFacingError
 from core.manifold.isomap import PhonemeMap
+from core.media.swap_in import swapped_in
 from core.motion.corpus import Corpus
 from core.motion.database import CapturedSentence, MotionDatabase, write_database
 from core.motion.marker_set import MarkerSet
@@ -236,16 +235,8 @@ def _flac(recording: Recording) -> bytes:
 def _store(database: MotionDatabase, path: Path, audio: dict[str, bytes]) -> MotionDatabase:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-        os.close(handle)
     except OSError as error:
-        raise UserFacingError(f"'{path}' cannot be written: {error.strerror}.") from error
-    beside = Path(name)
-    try:
+        raise UserFacingError(f"The folder '{path.parent}' cannot be made: {error.strerror}.") from error
+    with swapped_in(path) as beside:
         write_database(database, beside, audio)
-        beside.replace(path)
-    except OSError as error:
-        raise UserFacingError(f"'{path}' cannot be written: {error}.") from error
-    finally:
-        beside.unlink(missing_ok=True)
     return replace(database, path=path)

@@ -43,7 +43,7 @@ def parse_marker_table(text: str, source: str) -> MarkerTable:
     for row in rows:
         name = (row["marker"] or "").strip()
         if not name or name in kept:
-            raise UserFacingError(f"Line {rows.line_num} of '{source}' has no marker name, or one that was used before.")
+            raise UserFacingError(f"Line {rows.line_num} of '{source}' has no marker name, or one used before.")
         if (row.get("kept") or "1").strip() != "1":
             continue
         kept.append(name)

@@ -90,9 +90,7 @@ class SearchEngine:
         request = self.request(speech)
         transition = self.prepare(progress.part(0.0, 0.5))
         began = time.perf_counter()
-        path = find_path(
-            request, self.database.nodes, transition, self.weights, self.kernels, progress.part(0.5, 0.9)
-        )
+        path = find_path(request, self.database.nodes, transition, self.weights, self.kernels, progress.part(0.5, 0.9))
         searched = time.perf_counter()
         slots = SlotFrames.of(
             [u.start_s for u in speech.transcript.phonemes],

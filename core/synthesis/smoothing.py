@@ -5,6 +5,8 @@ Deng and Neumann 2008, section 7.2, equation 16 and table 4.
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 from scipy.interpolate import make_smoothing_spline
 
@@ -22,7 +24,12 @@ _TIE = 1e5  # weight of the untouched neighbours: high enough to hold, low enoug
 
 
 def smooth_joins(
-    motion: np.ndarray, path: np.ndarray, phonemes: np.ndarray, slots: SlotFrames, nodes: NodeTable, half_window: int = 3
+    motion: np.ndarray,
+    path: np.ndarray,
+    phonemes: np.ndarray,
+    slots: SlotFrames,
+    nodes: NodeTable,
+    half_window: int = 3,
 ) -> np.ndarray:
     """Smooth the ``2 * half_window`` frames around each join.
 
@@ -56,7 +63,7 @@ def join_windows(
     pau = PHONEMES.index(PAU)
     kept = [p for p in range(len(path)) if slots.stop[p] > slots.start[p]]
     windows: list[tuple[int, int]] = []
-    for before, after in zip(kept, kept[1:]):
+    for before, after in itertools.pairwise(kept):
         silent = pau in (phonemes[before], phonemes[after])
         captured_so = after == before + 1 and nodes.pre[path[after]] == path[before]
         if silent or captured_so:

@@ -21,7 +21,7 @@ from core.progress import SILENT, Progress
 from core.speech.transcript_files import read_transcript
 
 OUTER_EYE_MM = 90.0
-_MOST_FRAMES = 2_000_000  # twice the paper's 135 minutes; more is refused before memory is asked for
+_MOST_BYTES = 1 << 30  # an hour of 148 points at 120 Hz is 384 MiB; more is refused before memory is asked for
 _ARRAYS = ("xyz64", "start", "clips", "landmark_index", "fps")
 
 
@@ -52,9 +52,7 @@ def read_tracked_points(folder: Path, progress: Progress = SILENT) -> Corpus:
     recordings = []
     for s, clip in enumerate(clips):
         progress.step(s / len(clips), f"reading {clip}")
-        audio_path = next((p for p in (folder / "audio" / f"{clip}{x}" for x in (".flac", ".wav")) if p.is_file()), None)
-        if audio_path is None:
-            raise UserFacingError(f"'{folder}' has no sound for the clip '{clip}'.")
+        audio_path = folder / "audio" / f"{clip}.flac"
         transcript = read_transcript(folder / "textgrid" / f"{clip}.TextGrid", load_audio(audio_path).duration_s)
         pixels = xyz[start[s] : start[s + 1]].astype(np.float32) / 64.0
         pixels[..., 1:] *= -1.0
@@ -70,12 +68,9 @@ def _load(path: Path) -> dict[str, np.ndarray]:
             missing = [name for name in _ARRAYS if name not in archive.files]
             if missing:
                 raise UserFacingError(f"'{path}' has no array '{missing[0]}'.")
-            with archive.zip.open("xyz64.npy") as member:
-                version = np.lib.format.read_magic(member)
-                header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-                shape, _, _ = header(member)
-            if shape[0] > _MOST_FRAMES:
-                raise UserFacingError(f"'{path}' holds {shape[0]} frames; at most {_MOST_FRAMES} are read.")
+            oversized = [m.filename for m in archive.zip.infolist() if m.file_size > _MOST_BYTES]
+            if oversized:
+                raise UserFacingError(f"'{oversized[0]}' in '{path}' is larger than {_MOST_BYTES >> 20} MiB.")
             return {name: archive[name] for name in _ARRAYS}
     except (OSError, ValueError, zipfile.BadZipFile, EOFError, KeyError) as error:
         raise UserFacingError(f"'{path}' is not a readable track file.") from error

@@ -1,0 +1,197 @@
+"""The command line: one verb a job, each with ``--help``, progress on standard error, ``--json`` on standard output."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.terminal import clear_failures, note, print_json, progress_bar, show_log
+from core.errors import UserFacingError
+
+app = typer.Typer(
+    name="efase", help="Author expressive speech animation from captured facial motion.", add_completion=False,
+    pretty_exceptions_enable=False, rich_markup_mode=None, context_settings={"help_option_names": ["-h", "--help"]},
+)  # fmt: skip
+
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
+Database = Annotated[Path | None, typer.Option("--db", help="Motion database; the demo's when absent.")]
+Lexicon = Annotated[Path | None, typer.Option(help="Pronunciations of names and coined words, `word phone phone …`.")]
+Strict = Annotated[bool, typer.Option(help="Refuse phones that are not in the set, instead of taking the nearest.")]
+
+
+def main() -> None:
+    """Entry point of the ``efase`` command."""
+    with clear_failures():
+        app(standalone_mode=True)
+
+
+@app.callback(invoke_without_command=True)
+def window(
+    context: typer.Context,
+    verbose: Annotated[bool, typer.Option("--verbose", help="Show the workstation's log.")] = False,
+) -> None:
+    """Open the workstation when no verb is given."""
+    show_log(verbose)
+    if context.invoked_subcommand is None:
+        from app.main import run_window
+
+        raise typer.Exit(run_window())
+
+
+@app.command()
+def demo(
+    out: Annotated[Path, typer.Option(help="Folder for the pictures and films.")] = Path("out"),
+    json: Json = False,
+) -> None:
+    """Synthesise the demo sentences in four emotions and draw the window, without a display."""
+    from app.headless import write_demo
+
+    with progress_bar("demo") as progress:
+        written = write_demo(out, progress)
+    if json:
+        print_json(written)
+    else:
+        for path in written["outputs"]:
+            print(path)
+        for sentence in written["notes"]:
+            note(sentence)
+
+
+@app.command()
+def build(
+    corpus: Annotated[Path, typer.Argument(help="Corpus folder; its layout is described in docs/corpus.md.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Motion database to write (.h5).")],
+    dims: Annotated[int, typer.Option(min=2, max=300, help="PCA dimensions.")] = 25,
+    json: Json = False,
+) -> None:
+    """Build a motion database from a corpus folder."""
+    from core.motion.build import BuildSettings, build_database
+    from core.motion.readers.corpus_folder import read_corpus
+
+    began = time.perf_counter()
+    with progress_bar("build") as progress:
+        read = read_corpus(corpus, progress.part(0.0, 0.1))
+        database = build_database(read, output, BuildSettings(n_dims=dims), progress.part(0.1, 1.0))
+    summary = {**database.summary(), "seconds_to_build": round(time.perf_counter() - began, 2)}
+    if json:
+        print_json(summary)
+    else:
+        print(f"{output}: {_in_words(summary)}, built in {summary['seconds_to_build']:.0f} s")
+
+
+@app.command()
+def info(
+    database: Annotated[Path | None, typer.Argument(metavar="[DB]", help="The demo's when absent.")] = None,
+    json: Json = False,
+) -> None:
+    """Say what a motion database holds."""
+    summary = _open(database).summary()
+    if json:
+        print_json(summary)
+        return
+    print(f"{summary['name']}{' (synthetic)' if summary['synthetic'] else ''}: {_in_words(summary)}")
+    print(f"emotions: {', '.join(f'{n} {e}' for e, n in summary['emotions'].items())}")
+    print(f"phonemes: {', '.join(f'{p} {n}' for p, n in summary['phonemes'].items())}")
+    print(f"content {summary['content_hash'][:16]}")
+
+
+@app.command()
+def align(
+    audio: Annotated[Path, typer.Argument(help="WAV, FLAC or OGG.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Praat TextGrid to write.")],
+    text: Annotated[str | None, typer.Option(help="What is said, or a text file; recognised when absent.")] = None,
+    lexicon: Lexicon = None,
+    json: Json = False,
+) -> None:
+    """Find when each word and phone is said."""
+    from app.speech import load_speech
+    from core.speech.textgrid import write_textgrid
+
+    if output.suffix.lower() != ".textgrid":
+        raise UserFacingError(f"'{output}' is not a name for a TextGrid.", "Let it end in .TextGrid.")
+    with progress_bar("align") as progress:
+        speech = load_speech(audio, text, lexicon=lexicon, progress=progress)
+    write_textgrid(speech.transcript, output)
+    _warn(speech.transcript.warnings)
+    if json:
+        print_json(
+            {
+                "text": speech.text, "recognised": speech.recognised, "duration_s": speech.transcript.duration_s,
+                "words": [[w.word, w.start_s, w.end_s] for w in speech.transcript.words],
+                "phonemes": _phonemes(speech.transcript), "warnings": list(speech.transcript.warnings),
+                "outputs": [str(output)],
+            }
+        )  # fmt: skip
+    else:
+        print(output)
+
+
+@app.command()
+def synth(
+    audio: Annotated[Path, typer.Argument(help="WAV, FLAC or OGG.")],
+    output: Annotated[list[Path], typer.Option("--output", "-o", help=".avi, .mp4, .c3d or .csv; repeat for more.")],
+    text: Annotated[str | None, typer.Option(help="What is said, or a text file with it.")] = None,
+    phones: Annotated[Path | None, typer.Option(help="TextGrid, label or `start end phone` file instead.")] = None,
+    db: Database = None,
+    emotion: Annotated[str | None, typer.Option(help="neutral, happiness, anger or sadness.")] = None,
+    emotions: Annotated[Path | None, typer.Option(help="Text lines `start end emotion [intensity]`.")] = None,
+    engine: Annotated[str, typer.Option(help="search")] = "search",
+    face: Annotated[str, typer.Option(help="`default`, or a mesh: OBJ, PLY, glTF.")] = "default",
+    markers: Annotated[Path | None, typer.Option(help="CSV `marker,vertex` for a face of your own.")] = None,
+    backend: Annotated[str, typer.Option(help="auto, numpy or opencl.")] = "auto",
+    pin: Annotated[list[str] | None, typer.Option(metavar="SLOT=NODE", help="Tie a motion node to a slot.")] = None,
+    fps: Annotated[str, typer.Option(help="24, 25, 29.97, 30 or 60.")] = "30",
+    start_frame: Annotated[int, typer.Option(min=0, help="Number of the first frame (timecode).")] = 0,
+    size: Annotated[str, typer.Option(help="Picture size.")] = "640x480",
+    style: Annotated[str, typer.Option(help="face, wireframe or markers.")] = "face",
+    lexicon: Lexicon = None,
+    strict: Strict = False,
+    json: Json = False,
+) -> None:
+    """Animate speech: find the best path through the database and write films or markers."""
+    from app.export import VideoSettings, frame_rate, video_size
+    from app.synthesis import SynthesisJob, run
+
+    job = SynthesisJob(
+        audio=audio, outputs=tuple(output), text=text, phones=phones, database=db, emotion=emotion, emotions=emotions,
+        engine=engine, face=face, marker_file=markers, backend=backend, pins=tuple(pin or ()),
+        video=VideoSettings(frame_rate(fps), *video_size(size), style, start_frame), lexicon=lexicon, strict=strict,
+    )  # fmt: skip
+    with progress_bar("synth") as progress:
+        answer = run(job, progress)
+    _warn(answer["warnings"])
+    if json:
+        print_json(answer)
+    else:
+        for path in answer["outputs"]:
+            print(path)
+
+
+def _open(path: Path | None):
+    from app.demo import demo_database
+    from core.motion.database import open_database
+
+    if path is not None:
+        return open_database(path)
+    with progress_bar("demo database") as progress:
+        return demo_database(progress)
+
+
+def _in_words(summary: dict) -> str:
+    return (
+        f"{summary['nodes']} motion nodes in {summary['sentences']} sentences, {summary['frames']} frames at "
+        f"{summary['rate_hz']:g} Hz of {summary['markers']} markers, {summary['pca_dims']} dimensions that cover "
+        f"{summary['pca_coverage']:.2%}"
+    )
+
+
+def _phonemes(transcript) -> list[dict]:
+    return [{"phone": u.phone, "start_s": u.start_s, "end_s": u.end_s} for u in transcript.phonemes]
+
+
+def _warn(sentences) -> None:
+    for sentence in sentences:
+        note(f"efase: {sentence}")

@@ -1,0 +1,92 @@
+"""From a synthesis to files: video, or markers for other programs."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+from app.pictures import FaceRig, frames
+from core.errors import UserFacingError
+from core.media.audio import Audio
+from core.media.video import n_video_frames, write_video
+from core.progress import SILENT, Progress
+from core.synthesis.marker_motion import MarkerMotion
+
+FRAME_RATES = {"24": Fraction(24), "25": Fraction(25), "29.97": Fraction(30000, 1001), "30": Fraction(30),
+               "60": Fraction(60)}  # fmt: skip
+VIDEO_SUFFIXES = (".avi", ".mp4")
+MARKER_SUFFIXES = (".csv", ".c3d")
+
+
+@dataclass(frozen=True)
+class VideoSettings:
+    """How a video is drawn.
+
+    fps : one of `FRAME_RATES`; width, height : pixels; style : one of `app.pictures.STYLES`
+    start_frame : number of the first frame, written as timecode
+    """
+
+    fps: Fraction = FRAME_RATES["30"]
+    width: int = 640
+    height: int = 480
+    style: str = "face"
+    start_frame: int = 0
+
+
+def frame_rate(name: str) -> Fraction:
+    """Return the exact rate that a user's ``--fps`` means; `UserFacingError` for one that is not offered."""
+    if name not in FRAME_RATES:
+        raise UserFacingError(f"'{name}' is not a frame rate on offer.", f"Choose one of {', '.join(FRAME_RATES)}.")
+    return FRAME_RATES[name]
+
+
+def video_size(text: str) -> tuple[int, int]:
+    """Return (width, height) of ``640x480``; `UserFacingError` outside 64 to 4096 pixels."""
+    width, _, height = text.lower().partition("x")
+    if not (width.isdecimal() and height.isdecimal() and all(64 <= int(n) <= 4096 for n in (width, height))):
+        raise UserFacingError(f"'{text}' is not a picture size.", "Write it as 640x480, each side 64 to 4096 pixels.")
+    return int(width), int(height)
+
+
+def check_outputs(paths: list[Path]) -> None:
+    """Raise `UserFacingError` before any work when an output could not be written."""
+    for path in paths:
+        if path.suffix.lower() not in VIDEO_SUFFIXES + MARKER_SUFFIXES:
+            known = ", ".join(VIDEO_SUFFIXES + MARKER_SUFFIXES)
+            raise UserFacingError(f"'{path}' has no suffix that can be written.", f"Known are {known}.")
+        if not path.parent.is_dir():
+            raise UserFacingError(
+                f"The folder '{path.parent}' does not exist, so '{path.name}' cannot be written there."
+            )
+        if path.is_dir():
+            raise UserFacingError(f"'{path}' is a folder.")
+
+
+def export(
+    motion: MarkerMotion,
+    audio: Audio,
+    rig: FaceRig | None,
+    path: Path,
+    settings: VideoSettings,
+    progress: Progress = SILENT,
+) -> None:
+    """Write ``motion`` with its sound to ``path``; the suffix says as what. Sampled at the video's frame rate."""
+    n_frames = n_video_frames(audio.duration_s, settings.fps)
+    sampled = motion.at_rate(settings.fps, n_frames)
+    suffix = path.suffix.lower()
+    if suffix in VIDEO_SUFFIXES:
+        pictures = frames(sampled, rig, settings.style, settings.width, settings.height)
+        write_video(path, pictures, n_frames, settings.fps, audio, progress, settings.start_frame)
+    else:
+        from core.motion.motion_files import write_c3d, write_markers_csv
+
+        write = write_c3d if suffix == ".c3d" else write_markers_csv
+        write(path, sampled.positions, sampled.markers.names, float(settings.fps))
+    progress.step(1.0, f"{path.name} written")
+
+
+def rounded_seconds(seconds: float) -> float:
+    """Round a measured time for a report."""
+    return round(seconds, 3 if seconds < 10 else 1) if math.isfinite(seconds) else seconds

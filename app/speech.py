@@ -1,0 +1,88 @@
+"""Speech as a user gives it: a sound file, and what is said in it if she knows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from core.errors import UserFacingError
+from core.media.audio import Audio, load_audio
+from core.progress import SILENT, Progress
+from core.speech.emotion import EmotionModifier, emotion_named
+from core.speech.transcript import Transcript
+
+
+@dataclass(frozen=True)
+class LoadedSpeech:
+    """Sound with its aligned transcript; ``recognised`` when nobody said what is said."""
+
+    audio: Audio
+    transcript: Transcript
+    text: str
+    recognised: bool
+
+
+def load_speech(
+    audio_path: Path,
+    text: str | None = None,
+    phones: Path | None = None,
+    lexicon: Path | None = None,
+    strict: bool = False,
+    progress: Progress = SILENT,
+) -> LoadedSpeech:
+    """Load a sound file and align it.
+
+    text : what is said, or the path of a text file with it; aligned by force
+    phones : a TextGrid, label or plain phone file instead; without either the speech is recognised first
+    lexicon : pronunciations of names and coined words
+    strict : refuse phones that are not in our set instead of taking the nearest
+    Raises `UserFacingError` naming the file that is wrong.
+    """
+    from core.speech.aligner import align, recognise
+    from core.speech.lexicon import read_lexicon
+
+    from core.speech.transcript_files import read_transcript
+
+    if text is not None and phones is not None:
+        raise UserFacingError("A text and a phone file were given; one of them says what is spoken.")
+    audio = load_audio(audio_path)
+    if phones is not None:
+        transcript = read_transcript(phones, audio.duration_s, strict=strict)
+        return LoadedSpeech(audio, transcript, " ".join(w.word for w in transcript.words), False)
+    words = read_lexicon(lexicon) if lexicon is not None else None
+    if text is not None:
+        said = read_text(text)
+        return LoadedSpeech(audio, align(audio, said, lexicon=words, progress=progress), said, False)
+    said, transcript = recognise(audio, lexicon=words, progress=progress)
+    heard = (
+        f"No transcript was given; recognised: “{said}”." if said else "No transcript was given, and no speech heard."
+    )
+    return LoadedSpeech(audio, replace(transcript, warnings=(heard, *transcript.warnings)), said, True)
+
+
+def read_text(text: str) -> str:
+    """Return ``text``, or what the file of that name holds."""
+    try:
+        path = Path(text)
+        if not path.is_file():
+            if path.suffix == ".txt":
+                raise UserFacingError(f"There is no text file at '{text}'.")
+            return text
+        return path.read_text(encoding="utf-8-sig")
+    except OSError:  # a sentence can be too long for a file name
+        return text
+    except UnicodeDecodeError as error:
+        raise UserFacingError(f"'{text}' is not a text file.") from error
+
+
+def emotion_modifiers(emotion: str | None, file: Path | None, duration_s: float) -> list[EmotionModifier]:
+    """Return the emotion spans that the options ask for; none is neutral."""
+    from core.speech.emotion_files import read_emotions
+
+    if file is not None:
+        if emotion is not None:
+            raise UserFacingError("An emotion and an emotion file were given; choose one of them.")
+        return read_emotions(file)
+    if emotion is None:
+        return []
+    return [EmotionModifier(0.0, duration_s, emotion_named(emotion), 1.0)]

@@ -1,0 +1,110 @@
+"""One synthesis from files to files, as the command line asks for it."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from app.demo import demo_database
+from app.export import VIDEO_SUFFIXES, VideoSettings, check_outputs, export, rounded_seconds
+from app.pictures import FaceRig
+from app.speech import emotion_modifiers, load_speech
+from core.errors import UserFacingError
+from core.face.default_face import FaceUnavailable
+from core.motion.database import open_database
+from core.progress import SILENT, Progress
+from core.search.engine import SearchAnswer, SearchEngine, SpeechInput
+from gpu.device import open_kernels
+
+ENGINES = ("search",)
+
+
+@dataclass(frozen=True)
+class SynthesisJob:
+    """Everything that `efase synth` was told; see its help."""
+
+    audio: Path
+    outputs: tuple[Path, ...]
+    text: str | None = None
+    phones: Path | None = None
+    database: Path | None = None
+    emotion: str | None = None
+    emotions: Path | None = None
+    engine: str = "search"
+    face: str = "default"
+    marker_file: Path | None = None
+    backend: str = "auto"
+    pins: tuple[str, ...] = ()
+    video: VideoSettings = field(default_factory=VideoSettings)
+    lexicon: Path | None = None
+    strict: bool = False
+
+
+def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
+    """Do the job and return the object of ``--json``; raises `UserFacingError` before anything is half-written."""
+    if job.engine not in ENGINES:
+        raise UserFacingError(f"There is no engine '{job.engine}'.", f"Choose one of {', '.join(ENGINES)}.")
+    check_outputs(list(job.outputs))
+    pins = _pins(job.pins)
+    database = open_database(job.database) if job.database else demo_database(progress.part(0.0, 0.1))
+    kernels, backend_sentence = open_kernels(job.backend)
+
+    began = time.perf_counter()
+    speech = load_speech(job.audio, job.text, job.phones, job.lexicon, job.strict, progress.part(0.1, 0.25))
+    modifiers = emotion_modifiers(job.emotion, job.emotions, speech.audio.duration_s)
+    aligned_s = time.perf_counter() - began
+    engine = SearchEngine(database, kernels)
+    answer = engine.synthesise(SpeechInput(speech.transcript, modifiers, pins), progress.part(0.25, 0.5))
+
+    began = time.perf_counter()
+    warnings = list(speech.transcript.warnings)
+    rig, video = None, job.video
+    if video.style != "markers" and any(path.suffix.lower() in VIDEO_SUFFIXES for path in job.outputs):
+        try:
+            rig = FaceRig.of(job.face, database.markers, job.marker_file, progress.part(0.5, 0.55))
+        except FaceUnavailable as error:
+            warnings.append(f"{error} Markers are drawn instead.")
+            video = VideoSettings(video.fps, video.width, video.height, "markers", video.start_frame)
+    for i, path in enumerate(job.outputs):
+        share = 0.45 / len(job.outputs)
+        export(answer.motion, speech.audio, rig, path, video, progress.part(0.55 + i * share, 0.55 + (i + 1) * share))
+    seconds = {
+        "align": aligned_s, "search": answer.search_s, "synthesis": answer.synthesis_s,
+        "render": time.perf_counter() - began,
+    }  # fmt: skip
+    return {
+        "phonemes": phoneme_rows(speech.transcript, answer, database.nodes),
+        "cost": answer.path.cost,
+        "backend": backend_sentence,
+        "engine": job.engine,
+        "text": speech.text,
+        "seconds": {name: rounded_seconds(value) for name, value in seconds.items()},
+        "warnings": warnings,
+        "outputs": [str(path) for path in job.outputs],
+    }
+
+
+def phoneme_rows(transcript, answer: SearchAnswer, nodes) -> list[dict[str, object]]:
+    """Return one object a slot: what is said, which node says it, and what that costs."""
+    path = answer.path
+    return [
+        {
+            "phone": u.phone, "start_s": u.start_s, "end_s": u.end_s, "node": nodes.name(path.nodes[p]),
+            "costs": {"observation": float(path.observation[p]), "transition": float(path.transition[p]),
+                      "emotion": float(path.emotion[p])},
+        }
+        for p, u in enumerate(transcript.phonemes)
+    ]  # fmt: skip
+
+
+def _pins(texts: tuple[str, ...]) -> dict[int, str]:
+    pins: dict[int, str] = {}
+    for text in texts:
+        slot, equals, node = text.partition("=")
+        if not equals or not slot.strip().isdecimal() or not node.strip():
+            raise UserFacingError(f"'{text}' is not a pin.", "Write it as SLOT=NODE, for instance 3=n04:12.")
+        if int(slot) in pins:
+            raise UserFacingError(f"Slot {int(slot)} is pinned twice.")
+        pins[int(slot)] = node.strip()
+    return pins

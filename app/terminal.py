@@ -1,0 +1,91 @@
+"""How the command line shows progress and failure. Standard output belongs to results alone."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import logging
+import sys
+import traceback
+from collections.abc import Iterator
+
+from core.errors import UserFacingError
+from core.folders import cache_dir
+from core.progress import Cancelled, Progress
+
+EXIT_USER_ERROR = 2
+EXIT_OUR_FAULT = 1
+EXIT_CANCELLED = 130
+
+
+class TerminalProgress(Progress):
+    """A progress bar on standard error; silent when that is not a terminal."""
+
+    def __init__(self, bar, task) -> None:
+        self._bar, self._task = bar, task
+
+    def step(self, fraction: float, message: str = "") -> None:
+        """See `Progress.step`."""
+        self._bar.update(self._task, completed=min(fraction, 1.0), description=message or None)
+
+
+@contextlib.contextmanager
+def progress_bar(title: str) -> Iterator[Progress]:
+    """Show one bar while the block runs."""
+    from rich.console import Console
+    from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as RichProgress
+
+    console = Console(stderr=True)
+    columns = (TextColumn("{task.description:40.40}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn())
+    with RichProgress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        yield TerminalProgress(bar, bar.add_task(title, total=1.0))
+
+
+def note(sentence: str) -> None:
+    """Tell the user something on standard error."""
+    print(sentence, file=sys.stderr)
+
+
+def print_json(answer: dict) -> None:
+    """Print the one object of ``--json``."""
+    print(json.dumps(answer, ensure_ascii=False, allow_nan=False))
+
+
+@contextlib.contextmanager
+def clear_failures() -> Iterator[None]:
+    """Turn every failure into one sentence and an exit code: 2 for the user to mend, 1 for our own fault."""
+    try:
+        yield
+    except UserFacingError as error:
+        note(f"efase: {error}")
+        sys.exit(EXIT_USER_ERROR)
+    except (Cancelled, KeyboardInterrupt):
+        note("efase: cancelled.")
+        sys.exit(EXIT_CANCELLED)
+    except BrokenPipeError:
+        sys.stderr.close()
+        sys.exit(EXIT_OUR_FAULT)
+    except MemoryError:
+        note("efase: there is not enough memory for this.")
+        sys.exit(EXIT_USER_ERROR)
+    except Exception as error:
+        note(f"efase: this should not have happened ({type(error).__name__}); {_written_down()}")
+        sys.exit(EXIT_OUR_FAULT)
+
+
+def _written_down() -> str:
+    """Keep the traceback for a report, and say where."""
+    path = cache_dir() / "last-failure.txt"
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(traceback.format_exc(), encoding="utf-8")
+    except OSError:
+        return "the details could not be written down."
+    return f"the details are in '{path}'."
+
+
+def show_log(verbose: bool) -> None:
+    """Send the workstation's log to standard error; warnings only, unless ``verbose``."""
+    logging.basicConfig(stream=sys.stderr, level=logging.INFO if verbose else logging.WARNING,
+                        format="%(name)s: %(message)s")  # fmt: skip
