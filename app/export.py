@@ -58,7 +58,7 @@ def check_outputs(paths: list[Path]) -> None:
             raise UserFacingError(f"'{path}' has no suffix that can be written.", f"Known are {known}.")
         if not path.parent.is_dir():
             raise UserFacingError(
-                f"The folder '{path.parent}' does not exist, so '{path.name}' cannot be written there."
+                f"There is no folder '{path.parent}' to write '{path.name}' into."
             )
         if path.is_dir():
             raise UserFacingError(f"'{path}' is a folder.")

@@ -123,12 +123,12 @@ def _landmark_mds(geodesics: np.ndarray, landmarks: np.ndarray, n_components: in
     among = squared[:, landmarks]
     mean = among.mean(axis=0)
     centred = -0.5 * (among - mean[None] - mean[:, None] + mean.mean())
-    if n_landmarks <= n_components + 1:
+    if n_landmarks < 100 or not centred.any():  # Lanczos wants room, and something to work on
         values, vectors = np.linalg.eigh(centred)
         values, vectors = values[::-1][:n_components], vectors[:, ::-1][:, :n_components]
     else:
-        # a fixed start vector keeps the map of equal data equal
-        values, vectors = eigsh(centred, k=n_components, which="LA", v0=np.ones(n_landmarks))
+        start = np.random.default_rng(0).normal(size=n_landmarks)  # fixed, so that equal data give an equal map
+        values, vectors = eigsh(centred, k=n_components, which="LA", v0=start)
         values, vectors = values[::-1], vectors[:, ::-1]
     embedding = np.zeros((n, n_components))
     real = values > max(values.max(initial=0.0), 0.0) * 1e-12

@@ -1,0 +1,87 @@
+"""The workstation's main job without a display: four films and a picture of the window."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from app.demo import demo_database
+from app.export import VideoSettings, export
+from app.pictures import FaceRig
+from core.actress.corpus import demo_sentences, transcript_of
+from core.errors import UserFacingError
+from core.face.default_face import FaceUnavailable
+from core.media.audio import load_audio
+from core.progress import SILENT, Progress
+from core.search.engine import SearchEngine, SpeechInput
+from core.speech.emotion import EmotionModifier
+from gpu.device import open_kernels
+
+WINDOW_SIZE = (1600, 1000)
+_PICTURE_LIMIT_S = 240
+
+
+def write_demo(out: Path, progress: Progress = SILENT) -> dict[str, object]:
+    """Write ``demo-<emotion>.avi`` for each demo sentence and ``workstation.png`` into ``out``.
+
+    Returns {outputs, notes, seconds}; a note is a sentence about something that had to be left out.
+    """
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserFacingError(f"The folder '{out}' cannot be made: {error.strerror}.") from error
+    began = time.perf_counter()
+    database = demo_database(progress.part(0.0, 0.2))
+    kernels, backend = open_kernels()
+    engine = SearchEngine(database, kernels)
+    notes = [backend]
+    rig, settings = None, VideoSettings()
+    try:
+        rig = FaceRig.of("default", database.markers, progress=progress.part(0.2, 0.25))
+    except FaceUnavailable as error:
+        notes.append(f"{error} Markers are drawn instead.")
+        settings = VideoSettings(style="markers")
+    outputs = []
+    sentences = demo_sentences()
+    for i, spoken in enumerate(sentences):
+        stage = progress.part(0.25 + 0.15 * i, 0.4 + 0.15 * i)
+        transcript = transcript_of(spoken)
+        painted = [EmotionModifier(0.0, transcript.duration_s, spoken.emotion)]
+        answer = engine.synthesise(SpeechInput(transcript, painted), stage.part(0.0, 0.2))
+        path = out / f"demo-{spoken.emotion}.avi"
+        export(answer.motion, load_audio(spoken.audio), rig, path, settings, stage.part(0.2, 1.0))
+        outputs.append(str(path))
+    progress.step(0.88, "drawing the window")
+    picture = out / "workstation.png"
+    trouble = draw_window(picture)
+    if trouble:
+        notes.append(trouble)
+    else:
+        outputs.append(str(picture))
+    return {"outputs": outputs, "notes": notes, "seconds": round(time.perf_counter() - began, 2)}
+
+
+def draw_window(path: Path) -> str:
+    """Draw the real main window under a virtual screen; return a sentence about what went wrong, or nothing."""
+    command = [sys.executable, "-m", "app.main", "--picture", str(path)]
+    environment = dict(os.environ)
+    if not (os.environ.get("DISPLAY") or sys.platform in ("darwin", "win32")):
+        virtual = shutil.which("xvfb-run")
+        if virtual is None:
+            return "The window was not drawn: there is no display and no xvfb-run (Debian package xvfb)."
+        width, height = WINDOW_SIZE
+        command = [virtual, "-a", "-s", f"-screen 0 {width}x{height}x24", *command]
+        environment["QT_QPA_PLATFORM"] = "xcb"
+        environment.pop("WAYLAND_DISPLAY", None)
+    try:
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=_PICTURE_LIMIT_S)
+    except subprocess.TimeoutExpired:
+        return f"The window was not drawn within {_PICTURE_LIMIT_S} s."
+    if done.returncode or not path.is_file():
+        last = (done.stderr.strip().splitlines() or ["it said nothing"])[-1]
+        return f"The window was not drawn: {last}"
+    return ""
