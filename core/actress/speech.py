@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from core.actress.randomness import generator_for
+from core.actress.randomness import Chance
 from core.actress.texts import DEMO_FOLDER
 from core.errors import UserFacingError
 from core.progress import SILENT, Progress
@@ -134,7 +134,7 @@ def _run_festival(rows: list[dict[str, str]], voice_of: dict[str, Voice], folder
         "    (fclose words)))",
     ]
     for row in rows:
-        vary = RATE_VARIATION * (2 * generator_for(f"rate {row['sentence']}").random() - 1)
+        vary = Chance(f"rate {row['sentence']}").between(-RATE_VARIATION, RATE_VARIATION)
         rate = voice_of[row["emotion"]].rate * (1 + vary)
         script.append(f'(speak "{folder / row["sentence"]}" "{row["text"]}" {rate:.4f})')
     path = folder / "speak.scm"

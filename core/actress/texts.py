@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -20,7 +21,7 @@ REQUIRED = ("I know you meant it.", "And so you just abandoned them?")
 def diphones(phones: Sequence[str]) -> frozenset[tuple[str, str]]:
     """Return the pairs of neighbouring phones of one sentence, silence at both ends included."""
     padded = ("SIL", *phones, "SIL")
-    return frozenset(zip(padded, padded[1:]))
+    return frozenset(itertools.pairwise(padded))
 
 
 def choose_texts(phones_of: Mapping[str, Sequence[str]], count: int, required: Iterable[str] = ()) -> list[str]:

@@ -1,0 +1,149 @@
+import csv
+import hashlib
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from core.actress.capture import GAP_FRAMES, markers_of
+from core.actress.corpus import (
+    RATE_HZ,
+    actress_marker_set,
+    database_sentences,
+    demo_sentences,
+    kept_markers,
+    record,
+    recordings,
+    transcript_of,
+)
+from core.actress.performance import bundled_marker_units, perform
+from core.progress import Progress
+from core.speech.phoneme import PHONEMES
+
+REPO = Path(__file__).resolve().parents[3]
+EVERY_SENTENCE = [*database_sentences(), *demo_sentences()]
+
+
+@pytest.fixture(scope="module")
+def corpus():
+    return recordings()
+
+
+def test_corpus_is_twelve_sentences_an_emotion(corpus):
+    emotions = [r.emotion for r in corpus]
+    assert {e: emotions.count(e) for e in set(emotions)} == {"neutral": 12, "happiness": 12, "anger": 12, "sadness": 12}
+    assert len({r.sentence for r in corpus}) == 48
+
+
+def test_labels_last_as_long_as_the_sound():
+    soundfile = pytest.importorskip("soundfile")
+    for spoken in EVERY_SENTENCE:
+        transcript, sound = transcript_of(spoken), soundfile.info(spoken.audio)
+        assert sound.samplerate == 16000 and sound.channels == 1
+        assert abs(transcript.duration_s - sound.duration) < 0.05, spoken.sentence
+
+
+def test_labels_are_phones_and_words_of_the_text():
+    for spoken in EVERY_SENTENCE:
+        transcript = transcript_of(spoken)
+        assert set(transcript.phones) <= set(PHONEMES)
+        said = [word.word for word in transcript.words]
+        assert said == spoken.text.lower().rstrip(".?!").split(), spoken.sentence
+        edges = {round(u.start_s, 3) for u in transcript.phonemes}
+        assert all(round(word.start_s, 3) in edges for word in transcript.words), spoken.sentence
+
+
+def test_corpus_has_most_phonemes_of_the_set(corpus):
+    spoken = {phone for r in corpus for phone in r.transcript.phones}
+    # Festival's dictionary writes the syllabic consonants as schwa and consonant
+    assert set(PHONEMES) - spoken == {"el", "em", "en"}
+
+
+def test_same_bytes_in_another_process_and_after_other_random_numbers():
+    spoken = database_sentences()[17]
+    np.random.seed(1)  # noqa: NPY002 - the global generator must not matter
+    here = hashlib.sha256(record(spoken).positions.tobytes()).hexdigest()
+    code = (
+        "import hashlib; from core.actress.corpus import *;"
+        "print(hashlib.sha256(record(database_sentences()[17]).positions.tobytes()).hexdigest())"
+    )
+    environment = os.environ | {"PYTHONHASHSEED": "77"}
+    other = subprocess.run([sys.executable, "-c", code], cwd=REPO, env=environment, capture_output=True, text=True)
+    assert other.stdout.strip() == here, other.stderr
+
+
+def test_recordings_cover_their_transcripts(corpus):
+    for r in corpus:
+        assert r.positions.dtype == np.float32
+        assert r.positions.shape[1:] == (102, 3) == (len(r.marker_names), 3)
+        assert 0 <= len(r.positions) / RATE_HZ - r.transcript.duration_s < 1 / RATE_HZ + 1e-9
+        assert r.audio is not None and r.audio.exists()
+
+
+def test_gaps_are_few_and_short(corpus):
+    lengths = []
+    for r in corpus:
+        lost = np.isnan(r.positions).any(axis=2)
+        assert np.array_equal(lost, np.isnan(r.positions).all(axis=2))
+        for marker in lost.T[lost.any(axis=0)]:
+            edges = np.flatnonzero(np.diff(np.concatenate([[0], marker, [0]])))
+            lengths += list(edges[1::2] - edges[::2])
+    assert 24 < len(lengths) < 48 * 5
+    assert GAP_FRAMES[0] <= min(lengths) and np.mean(np.array(lengths) <= GAP_FRAMES[1]) > 0.95
+
+
+def test_head_moves_rigidly_and_noise_is_that_of_a_capture_system(corpus):
+    units = bundled_marker_units()
+    for r, spoken in list(zip(corpus, database_sentences()))[::7]:
+        still = markers_of(perform(r.transcript, r.emotion, r.sentence), units)
+        whole = ~np.isnan(r.positions).any(axis=(1, 2))
+        for f in np.flatnonzero(whole)[::40]:
+            a, b = still[f] - still[f].mean(axis=0), r.positions[f] - r.positions[f].mean(axis=0)
+            u, _, vt = np.linalg.svd(a.T @ b)
+            rotation = u @ vt
+            assert np.linalg.det(rotation) > 0
+            residual = np.sqrt((((a @ rotation) - b) ** 2).sum(axis=1).mean())
+            assert 0.1 < residual < 0.3, spoken.sentence
+
+
+def test_kept_markers_are_those_of_the_table():
+    with open(REPO / "resources" / "markers" / "actress-102.csv", encoding="utf-8", newline="") as lines:
+        rows = [row for row in csv.DictReader(lines) if row["kept"] == "1"]
+    markers = actress_marker_set()
+    assert markers.names == kept_markers() == tuple(row["marker"] for row in rows)
+    assert len(markers) == 90
+    for row in rows:
+        for group in filter(None, row["groups"].split(";")):
+            assert row["marker"] in markers.groups[group]
+    assert dict(markers.landmarks) == {row["landmark"]: row["marker"] for row in rows if row["landmark"]}
+    assert sum(len(members) for members in markers.groups.values()) == sum(
+        len(list(filter(None, row["groups"].split(";")))) for row in rows
+    )
+    assert np.allclose(markers.rest[markers.group("origin")], 0)
+
+
+def test_emotions_are_told_apart_by_the_nearest_mean_of_sentence_averages(corpus):
+    units = bundled_marker_units()
+    averages = np.array([markers_of(perform(r.transcript, r.emotion, r.sentence), units).mean(axis=0) for r in corpus])
+    emotions = np.array([r.emotion for r in corpus])
+    texts = np.array([r.text for r in corpus])
+    right = 0
+    for average, emotion, text in zip(averages, emotions, texts):
+        known = texts != text
+        means = {e: averages[known & (emotions == e)].mean(axis=0) for e in set(emotions)}
+        right += min(means, key=lambda e: np.linalg.norm(means[e] - average)) == emotion
+    assert right >= 0.95 * len(corpus)
+
+
+def test_progress_reaches_the_end():
+    class Listener(Progress):
+        fractions: list[float] = []  # noqa: RUF012
+
+        def step(self, fraction, message=""):
+            self.fractions.append(fraction)
+
+    recordings(Listener())
+    assert Listener.fractions == sorted(Listener.fractions) and Listener.fractions[-1] == 1.0
