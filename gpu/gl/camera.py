@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from core.face.face import Face
+
 _MARGIN = 1.06
 _MAX_ELEVATION_DEG = 89.0
 
@@ -85,3 +87,21 @@ class Camera:
         matrix[2, 2], matrix[2, 3] = (far + near) / (near - far), 2 * far * near / (near - far)
         matrix[3, 2] = -1
         return matrix
+
+
+def portrait_bounds(face: Face) -> np.ndarray:
+    """Return the box, shape (2, 3), mm, that a portrait of ``face`` shows: hair to neck, without the shoulders.
+
+    The whole mesh where the landmarks are unknown.
+    """
+    low, high = face.positions.min(axis=0).astype(float), face.positions.max(axis=0).astype(float)
+    needed = ("outer_eye_left", "outer_eye_right", "chin")
+    if any(name not in face.landmarks for name in needed):
+        return np.stack([low, high])
+    left, right, chin = (face.positions[face.landmarks[name]].astype(float) for name in needed)
+    eyes, apart = (left + right) / 2, face.outer_eye_distance
+    wide = 1.02 * apart
+    portrait = np.array(
+        [[eyes[0] - wide, chin[1] - 0.42 * apart, low[2]], [eyes[0] + wide, eyes[1] + 1.32 * apart, high[2]]]
+    )
+    return np.stack([np.maximum(portrait[0], low), np.minimum(portrait[1], high)])

@@ -21,42 +21,60 @@ def materials(face: Face) -> np.ndarray:
 
 
 def rest_places(face: Face) -> np.ndarray:
-    """Return the resting place of each vertex, of eyeballs its direction from the ball's centre (float32, (V, 3)).
+    """Return what each vertex keeps of its resting place, float32, shape (n_vertices, 3).
 
-    The iris is painted around +z of that direction, so it turns with the eyeball's vertices.
+    Skin and the inside of the mouth: the place, mm. Eyeballs: the direction from the ball's centre, unit; the iris is
+    painted around +z of it, so it turns with the ball. Lashes: the direction around the middle of the eye's opening
+    as (cos, sin), and 0 at the root to 1 at the tip; lower lashes are thinner, as if they began past half-way.
     """
     places = np.array(face.positions, np.float32)
-    for part in ("eye_left", "eye_right"):
-        ball = face.vertices_of(part)
-        if len(ball):
-            centre = (places[ball].min(axis=0) + places[ball].max(axis=0)) / 2
-            # the back of a cut eyeball is missing: its true centre lies a radius behind the front
-            radius = np.ptp(places[ball][:, :2], axis=0).max() / 2
-            centre[2] = places[ball][:, 2].max() - radius
-            offset = places[ball] - centre
-            places[ball] = offset / np.maximum(np.linalg.norm(offset, axis=1, keepdims=True), 1e-6)
+    for side in ("left", "right"):
+        ball = face.vertices_of(f"eye_{side}")
+        if not len(ball):
+            continue
+        centre = (places[ball].min(axis=0) + places[ball].max(axis=0)) / 2
+        # the back of a cut eyeball is missing: its true centre lies a radius behind the front
+        radius = max(np.ptp(places[ball][:, :2], axis=0).max() / 2, 1e-3)
+        centre[2] = places[ball][:, 2].max() - radius
+        offset = places[ball] - centre
+        places[ball] = offset / np.maximum(np.linalg.norm(offset, axis=1, keepdims=True), 1e-6)
+        for lid in ("upper", "lower"):
+            lashes = face.vertices_of(f"lashes_{lid}_{side}")
+            if len(lashes):
+                offset = face.positions[lashes] - centre
+                around = offset[:, :2] / np.maximum(np.linalg.norm(offset[:, :2], axis=1, keepdims=True), 1e-6)
+                # roots lie on the lid, which hugs the ball; tips stand off
+                from_root = np.linalg.norm(offset, axis=1) - radius
+                low, high = np.quantile(from_root, [0.25, 0.98])
+                tip = np.clip((from_root - low) / max(high - low, 1e-6), 0.0, 1.0)
+                if lid == "lower":
+                    tip = 0.6 + 0.4 * tip
+                places[lashes] = np.column_stack([around, tip])
     return places
 
 
 def lip_weights(face: Face) -> np.ndarray:
     """Return how much each vertex is red of the lips, float32 0..1, shape (n_vertices,).
 
-    Drawn from the landmarks of mouth corners and lips: two arcs that meet in the corners. 0 where they are unknown.
+    Two arcs that meet in the corners of the mouth, as high as lips are for their width, or as the landmarks ask.
+    All 0 where the corners are unknown.
     """
     weights = np.zeros(len(face.positions), np.float32)
-    names = ("mouth_corner_left", "mouth_corner_right", "upper_lip", "lower_lip")
-    if any(name not in face.landmarks for name in names):
+    if "mouth_corner_left" not in face.landmarks or "mouth_corner_right" not in face.landmarks:
         return weights
-    left, right, upper, lower = (face.positions[face.landmarks[name]].astype(float) for name in names)
-    middle, half = (left + right) / 2, np.linalg.norm(left - right) / 2
+    left, right = (face.positions[face.landmarks[f"mouth_corner_{side}"]].astype(float) for side in ("left", "right"))
+    middle, half = (left + right) / 2, max(np.linalg.norm(left - right) / 2, 1e-6)
+    heights = {"upper_lip": 0.40, "lower_lip": -0.34}
+    for name, least in heights.items():
+        if name in face.landmarks:
+            marked = (face.positions[face.landmarks[name]][1] - middle[1]) / half
+            heights[name] = max(marked, least) if least > 0 else min(marked, least)
     x, y, z = (face.positions - middle).T / half
-    height_up, height_down = (upper[1] - middle[1]) / half, (middle[1] - lower[1]) / half
     side = np.minimum(np.abs(x), 1.0)
-    bow = 1.0 - side**1.7 - 0.10 * np.exp(-((side / 0.10) ** 2))
-    outline_up, outline_down = height_up * bow, height_down * (1.0 - side**2.4)
-    inside = np.where(y >= 0, outline_up - y, outline_down + y)
-    soft = 0.06
-    weights[:] = np.clip(inside / soft + 0.5, 0.0, 1.0) * (np.abs(x) < 1.02) * (z > -0.35)
+    bow = 1.0 - side**1.8 - 0.09 * np.exp(-((side / 0.12) ** 2))
+    above, below = heights["upper_lip"] * bow - y, y - heights["lower_lip"] * (1.0 - side**2.6)
+    inside = np.minimum(above, below)
+    weights[:] = np.clip(inside / 0.07 + 0.5, 0.0, 1.0) * (np.abs(x) < 1.02) * (z > -0.35)
     return weights * (face.part == PARTS.index("skin"))
 
 
@@ -73,15 +91,10 @@ def brow_arcs(face: Face) -> tuple[np.ndarray, float]:
     for row, side in ((0, "left"), (3, "right")):
         brow, inner, outer = (face.positions[face.landmarks[f"{n}_{side}"]] for n in ("brow", "inner_eye", "outer_eye"))
         outward = np.sign(outer[0] - inner[0])
-        for at, (x, y) in enumerate(
-            (
-                (inner[0] - outward * 0.02 * scale, brow[1] - 0.030 * scale),
-                (inner[0] + 0.62 * (outer[0] - inner[0]), brow[1] + 0.018 * scale),
-                (outer[0] + outward * 0.055 * scale, brow[1] - 0.070 * scale),
-            )
-        ):
-            arcs[row + at] = x, y, brow[2]
-    return arcs, 0.042 * scale
+        arcs[row] = inner[0] - outward * 0.015 * scale, brow[1] - 0.040 * scale, brow[2]
+        arcs[row + 1] = inner[0] + 0.66 * (outer[0] - inner[0]), brow[1] + 0.008 * scale, brow[2]
+        arcs[row + 2] = outer[0] + outward * 0.055 * scale, brow[1] - 0.055 * scale, brow[2]
+    return arcs, 0.078 * scale
 
 
 def quad_diagonals(triangles: np.ndarray, positions: np.ndarray) -> np.ndarray:

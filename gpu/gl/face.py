@@ -8,18 +8,9 @@ import moderngl
 import numpy as np
 
 from core.face.face import Face
+from gpu.gl import complexion
 from gpu.gl.camera import Camera
-from gpu.gl.complexion import (
-    SKIN,
-    SOCKET,
-    TEETH,
-    TONGUE,
-    brow_arcs,
-    lip_weights,
-    materials,
-    quad_diagonals,
-    rest_places,
-)
+from gpu.gl.complexion import LASHES, SKIN, SOCKET, TEETH, TONGUE
 from gpu.gl.markers import MarkerCloud
 from gpu.gl.normals import VertexNormals
 from gpu.gl.occlusion import openness
@@ -61,19 +52,23 @@ class FaceRenderer:
         """
         self._free_mesh()
         rest = np.ascontiguousarray(face.positions, np.float32)
+        material = complexion.materials(face)
         triangles = _facing_out(np.asarray(face.triangles, np.int32), rest)
+        # lashes let light through, so they are drawn after all that lies behind them
+        is_lash = material[triangles[:, 0]] == LASHES
+        triangles = np.ascontiguousarray(triangles[np.argsort(is_lash, kind="stable")])
+        self._n_lash_corners = 3 * int(is_lash.sum())
         self._normals = VertexNormals(triangles, rest)
         normals = self._normals(rest)
-        material = materials(face)
         surface = np.empty((len(rest), 3), np.float32)
         surface[:, 0] = material
-        surface[:, 1] = lip_weights(face) if lips is None else lips
+        surface[:, 1] = complexion.lip_weights(face) if lips is None else lips
         surface[:, 2] = self._openness(rest, normals, triangles, material)
 
         ctx = self._ctx
         self._positions = ctx.buffer(rest.tobytes(), dynamic=True)
         self._normal_buffer = ctx.buffer(normals.tobytes(), dynamic=True)
-        places, surfaces = ctx.buffer(rest_places(face).tobytes()), ctx.buffer(surface.tobytes())
+        places, surfaces = ctx.buffer(complexion.rest_places(face).tobytes()), ctx.buffer(surface.tobytes())
         indices = ctx.buffer(triangles.tobytes())
         inputs = [
             (self._positions, "3f", "in_position"),
@@ -84,12 +79,12 @@ class FaceRenderer:
         self._shaded_array = ctx.vertex_array(self._shaded, inputs, indices, skip_errors=True)
         self._wire_array = ctx.vertex_array(self._wire, inputs, indices, skip_errors=True)
         hidden = np.zeros((-(-max(len(triangles), 1) // _EDGE_ROW), _EDGE_ROW), np.uint8)
-        hidden.ravel()[: len(triangles)] = quad_diagonals(triangles, rest)
+        hidden.ravel()[: len(triangles)] = complexion.quad_diagonals(triangles, rest)
         self._hidden_edges = ctx.texture((_EDGE_ROW, len(hidden)), 1, hidden.tobytes(), dtype="u1", alignment=1)
         self._mesh = [self._shaded_array, self._wire_array, self._positions, self._normal_buffer]
         self._mesh += [places, surfaces, indices, self._hidden_edges]
 
-        arcs, width_mm = brow_arcs(face)
+        arcs, width_mm = complexion.brow_arcs(face)
         self._shaded["brows"].write(arcs.tobytes())
         self._shaded["brow_width_mm"].value = width_mm
         self._face = face
@@ -155,7 +150,13 @@ class FaceRenderer:
         program["view"].write(np.ascontiguousarray(view.T, np.float32).tobytes())
         program["projection"].write(np.ascontiguousarray(projection.T, np.float32).tobytes())
         if style is Style.SHADED:
-            self._shaded_array.render()
+            n_solid = 3 * len(self._face.triangles) - self._n_lash_corners
+            self._shaded_array.render(vertices=n_solid)
+            if self._n_lash_corners:
+                ctx = self._ctx
+                ctx.enable(moderngl.BLEND)
+                ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ZERO, moderngl.ONE
+                self._shaded_array.render(vertices=self._n_lash_corners, first=n_solid)
             return
         program["viewport_px"].value = size_px
         self._hidden_edges.use(0)

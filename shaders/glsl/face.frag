@@ -1,5 +1,6 @@
 #version 330 core
 // The shaded face. One work-item: one pixel of the mesh; see face.vert for what comes in.
+//   Alpha is 1 but for lashes, which are drawn last.
 //   brows  two arcs, each three points (inner end, arch, outer end), mm at rest; brow_width_mm 0: none
 #include "light.glsl"
 
@@ -14,12 +15,12 @@ uniform float brow_width_mm;
 
 out vec4 colour;
 
-const vec3 SKIN = vec3(0.560, 0.300, 0.205);
-const vec3 LIP = vec3(0.420, 0.120, 0.105);
+const vec3 SKIN = vec3(0.520, 0.275, 0.185);
+const vec3 LIP = vec3(0.400, 0.105, 0.095);
 const vec3 BROW = vec3(0.050, 0.028, 0.018);
-const vec3 SCLERA = vec3(0.700, 0.660, 0.620);
-const vec3 IRIS = vec3(0.105, 0.160, 0.150);
-const vec3 TOOTH = vec3(0.640, 0.580, 0.480);
+const vec3 SCLERA = vec3(0.480, 0.440, 0.405);
+const vec3 IRIS = vec3(0.085, 0.120, 0.110);
+const vec3 TOOTH = vec3(0.560, 0.480, 0.370);
 const vec3 TONGUE = vec3(0.420, 0.130, 0.115);
 const vec3 SOCKET = vec3(0.120, 0.022, 0.018);
 const vec3 LASH = vec3(0.012, 0.008, 0.007);
@@ -28,32 +29,38 @@ float hash(vec2 p) {
     return fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453);
 }
 
-// How much of an eyebrow covers this place: hair thins to both ends and to the rims.
+// How much of an eyebrow covers this place: a curve through three points, hair thin at both ends and at the rims.
 float brow_cover() {
     float cover = 0.0;
     for (int side = 0; side < 2; side++) {
         vec2 inner = brows[3 * side].xy, arch = brows[3 * side + 1].xy, outer = brows[3 * side + 2].xy;
-        vec2 first = arch - inner, second = outer - arch;
-        float t1 = clamp(dot(rest.xy - inner, first) / dot(first, first), 0.0, 1.0);
-        float t2 = clamp(dot(rest.xy - arch, second) / dot(second, second), 0.0, 1.0);
-        float d1 = distance(rest.xy, inner + t1 * first), d2 = distance(rest.xy, arch + t2 * second);
-        float along = d1 < d2 ? 0.55 * t1 : 0.55 + 0.45 * t2;
-        float width = brow_width_mm * mix(1.0, 0.42, along * along) * smoothstep(-0.12, 0.10, along);
-        float hair = 0.75 + 0.5 * hash(floor(vec2(rest.x * 2.2 + rest.y * 1.1, rest.y * 0.45)));
-        float here = (1.0 - smoothstep(0.45, 1.0, min(d1, d2) / width)) * hair;
-        cover = max(cover, here * (1.0 - smoothstep(0.80, 1.0, along) * 0.7));
+        float u = (rest.x - inner.x) / (outer.x - inner.x);
+        float top = (arch.x - inner.x) / (outer.x - inner.x);
+        float rise = arch.y - mix(inner.y, outer.y, top);
+        float middle = mix(inner.y, outer.y, u) + rise * u * (1.0 - u) / (top * (1.0 - top));
+        float width = 0.5 * brow_width_mm * mix(1.0, 0.40, u * u);
+        float hair = 0.72 + 0.45 * hash(floor(vec2(rest.x * 2.6 + abs(rest.y) * 1.3, rest.y * 0.5)));
+        float here = 1.0 - smoothstep(0.35, 1.0, abs(rest.y - middle) / width);
+        cover = max(cover, here * hair * smoothstep(-0.06, 0.16, u) * (1.0 - smoothstep(0.78, 1.04, u)));
     }
-    return clamp(cover, 0.0, 0.86) * step(brows[1].z - 25.0, rest.z);
+    return clamp(cover, 0.0, 0.85) * step(brows[1].z - 25.0, rest.z);
+}
+
+// Enamel is whole in the mesh; the gaps between teeth are painted, every 0.2 rad along the arch.
+float tooth_gaps() {
+    float along = atan(rest.x, rest.z + 22.0) / 0.20;
+    float gap = abs(fract(along) - 0.5);
+    return 1.0 - 0.45 * smoothstep(0.40, 0.49, gap);
 }
 
 vec3 skin(vec3 n, vec3 to_eye) {
     float lip = smoothstep(0.25, 0.75, lip_open.x);
     float open = lip_open.y;
     vec3 albedo = mix(SKIN, LIP, lip * 0.72);
-    float brow = brow_width_mm > 0.0 ? brow_cover() : 0.0;
+    float brow = abs(rest.y - brows[1].y) < 1.5 * brow_width_mm ? brow_cover() : 0.0;
     albedo = mix(albedo, BROW, brow);
     // light that leaks into shaded skin is red
-    vec3 bleed = mix(vec3(0.62, 0.30, 0.24), vec3(1.0), open);
+    vec3 bleed = mix(vec3(0.80, 0.46, 0.38), vec3(1.0), open);
     vec3 lit = albedo * diffuse_light(n, vec3(0.42, 0.20, 0.14), open) * mix(bleed, vec3(1.0), 0.4);
     float gloss = mix(0.55, 1.0, lip) * (1.0 - 0.8 * brow) * open;
     lit += highlights(n, to_eye, mix(16.0, 42.0, lip), 0.030) * gloss;
@@ -76,7 +83,7 @@ vec3 eye(vec3 n, vec3 to_eye) {
     // lids throw a soft shadow on the upper part of the ball
     float lid = 1.0 - 0.55 * smoothstep(0.10, 0.60, direction.y);
     vec3 lit = albedo * diffuse_light(n, vec3(0.25), 0.8) * lid;
-    return lit + highlights(n, to_eye, 380.0, 0.045) * 0.9 + highlights(n, to_eye, 30.0, 0.03) * 0.15;
+    return lit + highlights(n, to_eye, 260.0, 0.05) * 1.3 + highlights(n, to_eye, 30.0, 0.03) * 0.2;
 }
 
 void main() {
@@ -84,20 +91,25 @@ void main() {
     vec3 n = normalize(normal_view);
     float open = lip_open.y;
     vec3 lit;
+    float cover = 1.0;
     if (material == 0) {
         lit = skin(n, to_eye);
         if (!gl_FrontFacing) lit = SOCKET * 0.12;
     } else if (material == 1) {
         lit = eye(n, to_eye);
     } else if (material == 2) {
-        lit = TOOTH * diffuse_light(n, vec3(0.30, 0.25, 0.20), 0.8) * open + highlights(n, to_eye, 60.0, 0.04) * open;
+        lit = TOOTH * tooth_gaps() * diffuse_light(n, vec3(0.45, 0.40, 0.34), 0.6) * open;
+        lit += highlights(n, to_eye, 60.0, 0.04) * open * open;
     } else if (material == 3) {
         lit = TONGUE * diffuse_light(n, vec3(0.35, 0.2, 0.15), 0.8) * open + highlights(n, to_eye, 40.0, 0.04) * open;
     } else if (material == 4) {
+        // many fine hairs, thinner towards their tips
+        float hairs = abs(sin(atan(rest.y, rest.x) * 61.0));
+        cover = (1.0 - smoothstep(0.15, 1.0, rest.z)) * mix(1.0, 0.25 + 0.75 * smoothstep(0.25, 0.75, hairs), rest.z);
         lit = LASH;
     } else {
         if (dot(n, to_eye) < 0.0) n = -n;
         lit = SOCKET * diffuse_light(n, vec3(0.2), 0.5) * open;
     }
-    colour = vec4(to_screen(lit), 1.0);
+    colour = vec4(to_screen(lit), cover);
 }

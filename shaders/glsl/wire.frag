@@ -5,6 +5,7 @@
 in vec3 wire_normal;
 noperspective in vec3 edge_px;
 flat in float wire_material;
+flat in float size_px;
 
 out vec4 colour;
 
@@ -18,5 +19,7 @@ void main() {
     if (wire_material > 0.5) line = mix(line, vec3(0.92, 0.74, 0.50), 0.55);
     if (!gl_FrontFacing) line *= 0.35;
     float nearest = min(edge_px.x, min(edge_px.y, edge_px.z));
-    colour = vec4(mix(line, surface, smoothstep(0.35, 1.25, nearest)), 1.0);
+    // where triangles shrink to a few pixels, lines pale so that the picture does not fill up
+    float room = clamp(size_px / 7.0, 0.30, 1.0);
+    colour = vec4(mix(surface, line, room * (1.0 - smoothstep(0.30, 1.15, nearest))), 1.0);
 }

@@ -15,6 +15,7 @@ uniform vec2 viewport_px;
 out vec3 wire_normal;
 noperspective out vec3 edge_px;
 flat out float wire_material;
+flat out float size_px;
 
 void main() {
     vec2 corner_px[3];
@@ -31,6 +32,7 @@ void main() {
         edge_px[i] += height;
         wire_normal = normal_view[i];
         wire_material = float(material[i]);
+        size_px = sqrt(twice_area);
         gl_Position = gl_in[i].gl_Position;
         EmitVertex();
     }
