@@ -37,22 +37,25 @@ class FaceRig:
         Raises `UserFacingError` when the face is not there or has no place for the markers.
         """
         from core.face.binding import bind
-        from core.face.mesh_files import load_face
 
         from core.face.default_face import default_face
+        from core.face.marker_placement import load_marker_file
 
         if face == DEFAULT_FACE:
             shown = default_face(progress.part(0.0, 0.4))
         else:
+            from core.face.mesh_files import load_face
+
             shown = load_face(Path(face), marker_file)
         progress.step(0.4, "binding markers to the face")
-        vertices = bind(shown, markers, marker_file)
+        placement = load_marker_file(marker_file) if marker_file is not None else None
+        vertices = bind(shown, markers, placement)
         progress.step(0.5, "measuring the face's surface")
         return cls(shown, vertices, MarkerSkin.fit(shown, vertices, markers))
 
     def deform(self, displacements: np.ndarray) -> np.ndarray:
-        """Vertices for marker displacements, shape (n_markers, 3), mm; float32, shape (n_vertices, 3)."""
-        return self.skin.deform(displacements)
+        """Return the vertices for marker displacements, shape (n_markers, 3), mm; float32, shape (n_vertices, 3)."""
+        return self.face.positions + self.skin.deform(displacements)
 
 
 def frames(
