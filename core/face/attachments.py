@@ -18,6 +18,7 @@ HEAD_PARTS = ("upper_teeth", "eye_left", "eye_right")
 MOUTH_DEPTH = 0.9
 LASH_REACH = 0.08
 BALL_ROUNDNESS = 0.6
+TALL = 0.4
 
 
 @dataclass(frozen=True)
@@ -40,8 +41,8 @@ def attach(face: Face, marker_vertices: np.ndarray) -> Attachments:
     Lower teeth and tongue follow the jaw, upper teeth and eyeballs the head, lashes the skin at their roots. The mouth
     socket fades from the lips to the jaw below and the head above. Pieces of the part ``skin`` or ``other`` that
     carry no marker, as in a user's file without parts, go by their place: inside the mouth and below the mouth line
-    to the jaw, above it to the head; round ones (eyeballs) to the head; thin ones close to the skin (lashes, tear
-    lines, brows) with the skin; all else to the head.
+    to the jaw, above it to the head (gums and tongue in one piece bend between the two); elsewhere round ones
+    (eyeballs) to the head; thin ones close to the skin (tear lines, brows) with the skin; all else to the head.
     """
     surface = np.isin(face.part, [PARTS.index(part) for part in SKIN_PARTS])
     welded = seam_partners(face.positions, face.triangles)
@@ -58,14 +59,17 @@ def attach(face: Face, marker_vertices: np.ndarray) -> Attachments:
     roots = cKDTree(face.positions[on_surface])
     surface_vertices = np.flatnonzero(on_surface)
     lashes = np.flatnonzero([PARTS[part].startswith("lashes") for part in face.part])
-    for number in np.unique(piece[lashes]):
-        strip = lashes[piece[lashes] == number]
+    strips = components(len(face.positions), face.triangles)
+    for number in np.unique(strips[lashes]):
+        strip = lashes[strips[lashes] == number]
         follows[strip] = surface_vertices[_root(face.positions[strip], roots)]
     for number in np.unique(piece[loose]):
         vertices = np.flatnonzero(loose & (piece == number))
         place = face.positions[vertices]
         if mouth is not None and mouth.holds(place.mean(axis=0)):
-            jaw_share[vertices] = float(mouth.below(place.mean(axis=0)[None])[0] > 0.5)
+            below = mouth.below(place)
+            tall = np.ptp(place[:, 1]) > TALL * mouth.scale
+            jaw_share[vertices] = below if tall else float(below.mean() > 0.5)
         elif mouth is not None and _thin(place) and roots.query(place)[0].max() < LASH_REACH * mouth.scale:
             follows[vertices] = surface_vertices[roots.query(place)[1]]
     return Attachments(on_surface, jaw_share, follows)

@@ -67,7 +67,7 @@ LANDMARKS = {
     "mouth_corner_left": 7139,
     "mouth_corner_right": 379,
     "upper_lip": 468,
-    "lower_lip": 495,
+    "lower_lip": 494,
     "chin": 5162,
     "brow_left": 6979,
     "brow_right": 204,
