@@ -53,6 +53,14 @@ class FaceRig:
         progress.step(0.5, "measuring the face's surface")
         return cls(shown, vertices, MarkerSkin.fit(shown, vertices, markers))
 
+    @property
+    def framing_mm(self) -> np.ndarray:
+        """The box that a portrait shows, float, shape (2, 3): the markers' own, with room for the skull."""
+        placed = self.face.positions[self.vertices].astype(float)
+        low, high = placed.min(axis=0), placed.max(axis=0)
+        room = high - low
+        return np.stack([low - [0.12, 0.2, 0.12] * room, high + [0.12, 0.22, 0.12] * room])
+
     def deform(self, displacements: np.ndarray) -> np.ndarray:
         """Return the vertices for marker displacements, shape (n_markers, 3), mm; float32, shape (n_vertices, 3)."""
         return self.face.positions + self.skin.deform(displacements)
@@ -79,8 +87,7 @@ def frames(
         try:
             if rig is not None and style != "markers":
                 renderer.set_face(rig.face)
-                skin = rig.face.positions[rig.face.vertices_of("skin")]
-                camera = Camera.front(np.stack([skin.min(axis=0), skin.max(axis=0)]))
+                camera = Camera.front(rig.framing_mm)
             else:
                 rest = motion.markers.rest
                 camera = Camera.front(np.stack([rest.min(axis=0), rest.max(axis=0)]))
