@@ -34,6 +34,7 @@ class SplatRenderer:
         """Return the picture, float32, shape (height, width, 3), 0..1, top row first; arguments as the reference's."""
         at_px, colours = splat_inputs(points, colours, sigma_px, rho, bounds, size)
         width, height = size
+        bound_before = self._ctx.detect_framebuffer()
         target = self._sized_target(size)
         target.use()
         self._ctx.viewport = (0, 0, width, height)
@@ -44,6 +45,7 @@ class SplatRenderer:
             self._add(held, len(splats), sigma_px, rho, size)
             held.release()
         pixels = np.frombuffer(target.read(components=3, dtype="f4"), np.float32)
+        bound_before.use()
         return np.minimum(pixels.reshape(height, width, 3), np.float32(1.0))
 
     def release(self) -> None:
