@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
-from app.pictures import FaceRig, frames
+from app.pictures import STYLES, FaceRig, frames
 from core.errors import UserFacingError
 from core.media.audio import Audio
 from core.media.video import n_video_frames, write_video
@@ -34,6 +34,10 @@ class VideoSettings:
     style: str = "face"
     start_frame: int = 0
 
+    def __post_init__(self) -> None:
+        if self.style not in STYLES:
+            raise UserFacingError(f"There is no style '{self.style}'.", f"Choose one of {', '.join(STYLES)}.")
+
 
 def frame_rate(name: str) -> Fraction:
     """Return the exact rate that a user's ``--fps`` means; `UserFacingError` for one that is not offered."""
@@ -57,9 +61,7 @@ def check_outputs(paths: list[Path]) -> None:
             known = ", ".join(VIDEO_SUFFIXES + MARKER_SUFFIXES)
             raise UserFacingError(f"'{path}' has no suffix that can be written.", f"Known are {known}.")
         if not path.parent.is_dir():
-            raise UserFacingError(
-                f"There is no folder '{path.parent}' to write '{path.name}' into."
-            )
+            raise UserFacingError(f"There is no folder '{path.parent}' to write '{path.name}' into.")
         if path.is_dir():
             raise UserFacingError(f"'{path}' is a folder.")
 

@@ -37,7 +37,6 @@ class FaceRig:
         Raises `UserFacingError` when the face is not there or has no place for the markers.
         """
         from core.face.binding import bind
-
         from core.face.default_face import default_face
         from core.face.marker_placement import load_marker_file
 
@@ -71,14 +70,13 @@ def frames(
 ) -> Iterator[np.ndarray]:
     """Yield one picture a frame of ``motion``, uint8, shape (height, width, 3).
 
-    Without a rig only markers can be drawn. Raises `UserFacingError` for an unknown style or a machine without GL.
+    style : one of `STYLES`; without a rig only markers can be drawn
+    Raises `UserFacingError` on a machine without GL.
     """
     from gpu.gl.camera import Camera
     from gpu.gl.face import FaceRenderer, Style
     from gpu.gl.offscreen import OffscreenRenderer
 
-    if style not in STYLES:
-        raise UserFacingError(f"There is no style '{style}'.", f"Choose one of {', '.join(STYLES)}.")
     if rig is None and style != "markers":
         raise UserFacingError("There is no face to draw.", "Draw the markers, with --style markers.")
     shown = {"face": Style.SHADED, "wireframe": Style.WIREFRAME, "markers": Style.MARKERS}[style]

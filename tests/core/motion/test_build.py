@@ -78,11 +78,9 @@ def test_nodes_and_clusters(database):
         "b": 4 * 24, "aa": 4 * 24, "k": 4 * 36, "iy": 4 * 48,
     }  # fmt: skip
     for phone, phoneme_map in database.maps.items():
-        rows = [n for n in range(16) if database.nodes[n].phone == phone]
-        expected = np.concatenate(
-            [np.arange(database.nodes[n].start_frame, database.nodes[n].stop_frame) for n in rows]
-        )
-        assert np.array_equal(phoneme_map.frames, expected)
+        nodes = [database.nodes[n] for n in range(16)]
+        spans = [np.arange(node.start_frame, node.stop_frame) for node in nodes if node.phone == phone]
+        assert np.array_equal(phoneme_map.frames, np.concatenate(spans))
 
 
 def test_head_motion_is_out_of_the_face_and_can_be_put_back(database, corpus):

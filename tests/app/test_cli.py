@@ -1,0 +1,278 @@
+"""The command line as a user meets it: results on standard output, sentences on standard error, exit codes."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import av
+import numpy as np
+import pytest
+import soundfile
+
+from app import cli
+from app.demo import demo_database
+from core.actress.corpus import demo_sentences
+from core.motion.motion_files import read_motion, write_c3d
+
+
+@pytest.fixture(scope="session")
+def demo():
+    return demo_database()
+
+
+@pytest.fixture
+def efase(monkeypatch, capsys):
+    """Run the command in this process; returns (exit code, stdout, stderr)."""
+
+    def run(*words):
+        monkeypatch.setattr(sys, "argv", ["efase", *map(str, words)])
+        with pytest.raises(SystemExit) as stop:
+            cli.main()
+        answer = capsys.readouterr()
+        return stop.value.code or 0, answer.out, answer.err
+
+    return run
+
+
+def spoken(emotion="anger"):
+    return next(s for s in demo_sentences() if s.emotion == emotion)
+
+
+def one_sentence(err: str) -> bool:
+    lines = err.strip().splitlines()
+    return len(lines) == 1 and lines[0].startswith("efase: ") and "Traceback" not in err
+
+
+def test_info_is_one_object(efase, demo):
+    code, out, err = efase("info", "--json")
+    answer = json.loads(out)
+    assert (code, err) == (0, "")
+    assert answer["nodes"] == len(demo.nodes)
+    assert answer["synthetic"] is True
+    assert set(answer) >= {
+        "frames",
+        "phonemes",
+        "emotions",
+        "sentences",
+        "pca_dims",
+        "pca_coverage",
+        "markers",
+        "rate_hz",
+    }
+    assert sum(answer["phonemes"].values()) == answer["nodes"]
+    code, out, _ = efase("info")
+    assert code == 0 and "synthetic" in out
+
+
+def test_synth_writes_film_and_markers_and_tells_the_path(efase, demo, tmp_path):
+    sentence = spoken()
+    outputs = [tmp_path / name for name in ("a.avi", "a.csv", "a.c3d")]
+    options = [word for path in outputs for word in ("-o", path)]
+    code, out, _ = efase(
+        "synth", sentence.audio, "--phones", sentence.phone_labels, "--emotion", "anger", "--style", "markers",
+        "--size", "160x120", "--fps", "25", "--json", *options,
+    )  # fmt: skip
+    assert code == 0
+    answer = json.loads(out)
+    assert answer["outputs"] == [str(p) for p in outputs]
+    costs = [sum(row["costs"].values()) for row in answer["phonemes"]]
+    assert sum(costs) == pytest.approx(answer["cost"])
+    for row in answer["phonemes"]:
+        demo.nodes.row(row["node"])
+    assert set(answer["seconds"]) == {"align", "search", "synthesis", "render"}
+    assert "opencl" in answer["backend"] or "numpy" in answer["backend"]
+
+    duration = soundfile.info(sentence.audio).duration
+    positions, names, rate = read_motion(outputs[1])
+    assert rate == pytest.approx(25)
+    assert abs(len(positions) / 25 - duration) <= 1 / 25
+    again, c3d_names, _ = read_motion(outputs[2])
+    assert list(names) == list(c3d_names) == list(demo.markers.names)
+    assert again == pytest.approx(positions, abs=1e-3)
+    with av.open(outputs[0]) as film:
+        video, sound = film.streams.video[0], film.streams.audio[0]
+        n_frames = sum(1 for _ in film.decode(video))
+        assert abs(n_frames / 25 - duration) <= 1 / 25
+        assert video.start_time == 0 and sound.start_time == 0
+
+
+def test_a_pin_holds_and_a_bad_one_is_explained(efase, demo, tmp_path):
+    sentence = spoken("sadness")
+    base = ["synth", sentence.audio, "--phones", sentence.phone_labels, "-o", tmp_path / "p.csv", "--json"]
+    code, out, _ = efase(*base, "--pin", "0=n01:3", "--pin", "4=a02:5")
+    rows = json.loads(out)["phonemes"]
+    assert code == 0
+    assert (rows[0]["node"], rows[4]["node"]) == ("n01:3", "a02:5")
+    for pin in ("4", "x=n01:3", "4=nobody:1", "999=n01:3", "-1=n01:3"):
+        code, out, err = efase(*base, "--pin", pin)
+        assert (code, out) == (2, "") and one_sentence(err), pin
+
+
+def test_backends_agree_on_a_real_request(efase, tmp_path):
+    sentence = spoken("happiness")
+    answers = []
+    for backend in ("numpy", "opencl"):
+        code, out, _ = efase(
+            "synth", sentence.audio, "--phones", sentence.phone_labels, "--emotion", "joy", "--backend", backend,
+            "-o", tmp_path / f"{backend}.csv", "--json",
+        )  # fmt: skip
+        assert code == 0
+        answers.append(json.loads(out))
+    assert answers[0]["phonemes"] == answers[1]["phonemes"]
+    assert answers[1]["backend"].startswith("opencl")
+
+
+def test_an_emotion_file_steers_the_path(efase, demo, tmp_path):
+    sentence = spoken("neutral")
+    painted = tmp_path / "emotions.txt"
+    painted.write_text("0 100 sadness\n")
+    base = ["synth", sentence.audio, "--phones", sentence.phone_labels, "-o", tmp_path / "e.csv", "--json"]
+    emotions = []
+    for extra in ([], ["--emotions", painted]):
+        _, out, _ = efase(*base, *extra)
+        nodes = [demo.nodes[demo.nodes.row(row["node"])] for row in json.loads(out)["phonemes"]]
+        emotions.append([node.emotion for node in nodes].count("sadness") / len(nodes))
+    assert emotions[0] < 0.1 and emotions[1] > 0.8
+
+
+def broken_inputs(folder):
+    """Every kind of bad sound, by name."""
+    rate = 16_000
+    tone = (0.3 * np.sin(np.arange(rate) / 20)).astype(np.float32)
+    whole = folder / "whole.wav"
+    soundfile.write(whole, tone, rate)
+    files = {"missing": folder / "missing.wav", "folder": folder}
+    for name, content in {
+        "empty": b"",
+        "truncated": whole.read_bytes()[:30],
+        "foreign": b"%PDF-1.7 this is no sound" * 50,
+    }.items():
+        files[name] = folder / f"{name}.wav"
+        files[name].write_bytes(content)
+    files["blink"] = folder / "blink.wav"
+    soundfile.write(files["blink"], tone[:160], rate)
+    files["nan"] = folder / "nan.wav"
+    soundfile.write(files["nan"], np.where(np.arange(rate) == 5, np.nan, tone), rate, subtype="FLOAT")
+    return files
+
+
+@pytest.mark.parametrize("kind", ["missing", "folder", "empty", "truncated", "foreign", "blink", "nan"])
+@pytest.mark.parametrize("verb", ["synth", "align"])
+def test_bad_sound_is_one_sentence_and_leaves_nothing(efase, tmp_path, kind, verb):
+    path = broken_inputs(tmp_path)[kind]
+    before = sorted(p.name for p in tmp_path.iterdir())
+    target = tmp_path / ("out.avi" if verb == "synth" else "out.TextGrid")
+    code, out, err = efase(verb, path, "--text", "hello", "-o", target)
+    assert (code, out) == (2, "")
+    assert one_sentence(err) and path.name in err
+    assert sorted(p.name for p in tmp_path.iterdir()) == before
+
+
+def test_bad_requests_are_one_sentence_each(efase, tmp_path):
+    sentence = spoken()
+    early = tmp_path / "early.TextGrid"
+    assert efase("align", sentence.audio, "--text", sentence.text, "-o", tmp_path / "whole.TextGrid")[0] == 0
+    whole = tmp_path / "whole.TextGrid"
+    soundfile.write(tmp_path / "long.wav", np.zeros(16_000 * 9, np.float32), 16_000)
+    newer = tmp_path / "newer.h5"
+    newer.write_bytes(demo_database().path.read_bytes())
+    import h5py
+
+    with h5py.File(newer, "r+") as file:
+        file.attrs["version_major"] = 99
+    early.write_text("nothing of the kind")
+    base = ["--phones", sentence.phone_labels, "-o", tmp_path / "x.csv"]
+    for words in (
+        [sentence.audio, *base, "--db", newer],
+        [sentence.audio, *base, "--db", tmp_path / "none.h5"],
+        [sentence.audio, *base, "--db", sentence.audio],
+        [sentence.audio, *base, "--emotion", "boredom"],
+        [sentence.audio, *base, "--emotion", "anger", "--emotions", early],
+        [sentence.audio, *base, "--text", "both"],
+        [sentence.audio, *base, "--backend", "abacus"],
+        [sentence.audio, *base, "--engine", "magic"],
+        [sentence.audio, *base, "--fps", "31"],
+        [sentence.audio, *base, "--size", "big"],
+        [sentence.audio, *base, "--style", "cubist", "-o", tmp_path / "x.avi"],
+        [sentence.audio, *base, "--face", tmp_path / "none.obj", "-o", tmp_path / "x.avi"],
+        [sentence.audio, "--phones", early, "-o", tmp_path / "x.csv"],
+        [sentence.audio, "--phones", tmp_path / "none.lab", "-o", tmp_path / "x.csv"],
+        [tmp_path / "long.wav", "--phones", whole, "-o", tmp_path / "x.csv"],
+        [sentence.audio, *base, "-o", tmp_path / "x.docx"],
+        [sentence.audio, *base, "-o", tmp_path / "nowhere" / "x.avi"],
+    ):
+        code, out, err = efase("synth", *words)
+        assert (code, out) == (2, ""), words
+        assert one_sentence(err), (words, err)
+    assert not list(tmp_path.glob("x.*"))
+
+
+def corpus_folder(folder, positions):
+    """A corpus folder of one sentence; returns the folder."""
+    sentence = spoken("neutral")
+    sound, rate = soundfile.read(sentence.audio)
+    (folder / "corpus.csv").write_text("sentence,emotion,text\none,neutral,anything\n")
+    soundfile.write(folder / "one.wav", sound, rate)
+    (folder / "one.lab").write_bytes(sentence.phone_labels.read_bytes())
+    write_c3d(folder / "one.c3d", positions, [f"m{k}" for k in range(positions.shape[1])], 60.0)
+    return folder
+
+
+def moving_markers(n_frames=300, n_markers=8):
+    rng = np.random.default_rng(0)
+    rest = rng.normal(size=(1, n_markers, 3)) * 40
+    return (rest + rng.normal(size=(n_frames, n_markers, 3))).astype(np.float32)
+
+
+def test_a_corpus_folder_becomes_a_database_that_synthesises(efase, tmp_path):
+    folder = tmp_path / "corpus"
+    folder.mkdir()
+    corpus_folder(folder, moving_markers())
+    database = tmp_path / "made.h5"
+    code, out, _ = efase("build", folder, "-o", database, "--json")
+    assert code == 0
+    answer = json.loads(out)
+    assert answer["markers"] == 8 and answer["synthetic"] is False
+    sentence = spoken()
+    target = tmp_path / "m.csv"
+    code, _, _ = efase("synth", sentence.audio, "--phones", sentence.phone_labels, "--db", database, "-o", target)
+    assert code == 0
+    assert read_motion(target)[0].shape[1] == 8
+
+
+def test_bad_corpora_are_one_sentence_and_leave_nothing(efase, tmp_path):
+    folder = tmp_path / "corpus"
+    folder.mkdir()
+    target = tmp_path / "made.h5"
+
+    def refused():
+        code, out, err = efase("build", folder, "-o", target)
+        return (code, out) == (2, "") and one_sentence(err) and not target.exists()
+
+    assert refused()
+    corpus_folder(folder, np.full((300, 8, 3), np.nan, np.float32))
+    assert refused()
+    corpus_folder(folder, moving_markers())
+    (folder / "one.c3d").write_bytes((folder / "one.c3d").read_bytes()[:700])
+    assert refused()
+    corpus_folder(folder, moving_markers())
+    for text in ("sentence\none\n", "sentence,emotion\n", "sentence,emotion\none,rage\n", "sentence,emotion\n../one,anger\n",
+                 "sentence,emotion,motion\none,neutral,../../etc/passwd\n"):  # fmt: skip
+        (folder / "corpus.csv").write_text(text)
+        assert refused(), text
+
+
+def test_our_own_fault_is_a_sentence_too(efase, monkeypatch, tmp_path):
+    monkeypatch.setenv("EFASE_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(cli, "_open", lambda path: 1 / 0)
+    code, out, err = efase("info")
+    assert (code, out) == (1, "")
+    assert one_sentence(err)
+    assert "ZeroDivisionError" in (tmp_path / "last-failure.txt").read_text()
+
+
+@pytest.mark.parametrize("verb", ["demo", "build", "info", "align", "synth"])
+def test_every_verb_has_help(efase, verb):
+    code, out, _ = efase(verb, "--help")
+    assert code == 0 and verb in out
