@@ -56,8 +56,11 @@ def write_c3d(path: str | Path, positions: np.ndarray, names: Sequence[str], rat
     file["data"]["meta_points"]["residuals"] = np.where(missing, -1.0, 0.0).T[None]
     file["data"]["meta_points"]["camera_masks"] = np.zeros((7, len(names), len(positions)), bool)
     with swapped_in(path) as beside:
-        beside.touch()  # ezc3d aborts without a reason where it may not write; this asks the system first
+        # ezc3d says nothing where it may not write or the disk is full, so both are asked for here
+        beside.touch()
         file.write(str(beside))
+        if beside.stat().st_size < 16 * len(names) * len(positions):
+            raise OSError("the disk is full")
 
 
 def read_c3d(path: str | Path) -> tuple[np.ndarray, tuple[str, ...], float]:

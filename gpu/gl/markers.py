@@ -33,7 +33,7 @@ class MarkerCloud:
         """Replace all markers.
 
         positions : shape (K, 3), mm, world space; a NaN marker is missing and not drawn
-        colours : shape (K, 3) or (3,), 0..1 as on screen; None: a warm white
+        colours : shape (K, 3) or (3,), 0..1 as on screen; None: as they were, a warm white for new ones
         links : int, shape (L, 2), rows of ``positions`` to join by a faint line
         """
         positions = np.asarray(positions, np.float32)

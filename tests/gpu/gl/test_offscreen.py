@@ -34,6 +34,15 @@ def test_a_picture_is_a_copy_that_outlives_the_next():
     assert (first[0] == [255, 0, 0]).all()
 
 
+def test_two_in_one_thread_take_turns():
+    with OffscreenRenderer(8, 8, 0) as one, OffscreenRenderer(16, 16, 0) as two:
+        for _ in range(2):
+            assert (one.frame(lambda framebuffer: framebuffer.clear(1, 0, 0, 1)) == [255, 0, 0]).all()
+            assert (two.frame(lambda framebuffer: framebuffer.clear(0, 0, 1, 1)) == [0, 0, 255]).all()
+        two.release()
+        assert (one.frame(lambda framebuffer: framebuffer.clear(0, 1, 0, 1)) == [0, 255, 0]).all()
+
+
 def test_a_thread_of_its_own_draws_while_another_context_lives():
     pictures = []
 
