@@ -85,10 +85,8 @@ def test_a_cardinal_says_its_number(number):
     """Read the words back by another road: sum what each word is worth."""
     ones = "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen"
     worth = {word: i for i, word in enumerate(f"{ones} seventeen eighteen nineteen".split())}
-    worth |= {
-        t: 10 * i
-        for i, t in enumerate(["twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety"], start=2)
-    }
+    tens = "zero ten twenty thirty forty fifty sixty seventy eighty ninety"
+    worth |= {word: 10 * i for i, word in enumerate(tens.split()) if i > 1}
     scales = {"thousand": 10**3, "million": 10**6, "billion": 10**9, "trillion": 10**12}
     total = group = 0
     for word in number_words(f"{number:,}"):
