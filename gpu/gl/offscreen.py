@@ -18,7 +18,7 @@ class OffscreenRenderer:
     """A standalone GL context with a framebuffer of ``width`` by ``height`` pixels.
 
     Use it as a context manager and in one thread; any thread may be that one, also while Qt draws in another. Make
-    renderers for its ``ctx`` right after it, or inside ``with offscreen.ctx:`` when another context came between.
+    renderers for its ``ctx`` right after it, or after `make_current` when another context came between.
 
     samples : multisampling; None: 4 on a graphics card, none on a software driver, where it would triple the time
 
@@ -61,13 +61,17 @@ class OffscreenRenderer:
 
     def frame(self, draw: Callable[[moderngl.Framebuffer], None]) -> np.ndarray:
         """Let ``draw`` fill the framebuffer; return the picture, uint8, shape (height, width, 3), top row first."""
-        # entering makes this context the thread's current one, whichever was so before
-        with self.ctx:
-            draw(self._drawn)
-            if self._drawn is not self._picture:
-                self.ctx.copy_framebuffer(self._picture, self._drawn)
-            rows = np.frombuffer(self._picture.read(components=3, alignment=1), np.uint8)
+        self.make_current()
+        draw(self._drawn)
+        if self._drawn is not self._picture:
+            self.ctx.copy_framebuffer(self._picture, self._drawn)
+        rows = np.frombuffer(self._picture.read(components=3, alignment=1), np.uint8)
         return np.ascontiguousarray(rows.reshape(self.height, self.width, 3)[::-1])
+
+    def make_current(self) -> None:
+        """Make this context the one that GL calls of the thread go to, as it is after ``__init__`` and ``frame``."""
+        # leaving it again would leave the thread without any, so it is only entered
+        self.ctx.__enter__()
 
     def release(self) -> None:
         """Free the framebuffer and the context."""
