@@ -21,7 +21,7 @@ const vec3 BROW = vec3(0.050, 0.028, 0.018);
 const vec3 SCLERA = vec3(0.480, 0.440, 0.405);
 const vec3 IRIS = vec3(0.085, 0.120, 0.110);
 const vec3 TOOTH = vec3(0.560, 0.480, 0.370);
-const vec3 TONGUE = vec3(0.420, 0.130, 0.115);
+const vec3 TONGUE = vec3(0.310, 0.085, 0.080);
 const vec3 SOCKET = vec3(0.120, 0.022, 0.018);
 const vec3 LASH = vec3(0.012, 0.008, 0.007);
 
