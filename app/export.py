@@ -10,12 +10,10 @@ from pathlib import Path
 from app.pictures import STYLES, FaceRig, frames
 from core.errors import UserFacingError
 from core.media.audio import Audio
-from core.media.video import n_video_frames, write_video
+from core.media.video import FRAME_RATES, n_video_frames, write_video
 from core.progress import SILENT, Progress
 from core.synthesis.marker_motion import MarkerMotion
 
-FRAME_RATES = {"24": Fraction(24), "25": Fraction(25), "29.97": Fraction(30000, 1001), "30": Fraction(30),
-               "60": Fraction(60)}  # fmt: skip
 VIDEO_SUFFIXES = (".avi", ".mp4")
 MARKER_SUFFIXES = (".csv", ".c3d")
 

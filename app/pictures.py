@@ -52,14 +52,6 @@ class FaceRig:
         progress.step(0.5, "measuring the face's surface")
         return cls(shown, vertices, MarkerSkin.fit(shown, vertices, markers))
 
-    @property
-    def framing_mm(self) -> np.ndarray:
-        """The box that a portrait shows, float, shape (2, 3): the markers' own, with room for the skull."""
-        placed = self.face.positions[self.vertices].astype(float)
-        low, high = placed.min(axis=0), placed.max(axis=0)
-        room = high - low
-        return np.stack([low - [0.12, 0.2, 0.12] * room, high + [0.12, 0.22, 0.12] * room])
-
     def deform(self, displacements: np.ndarray) -> np.ndarray:
         """Return the vertices for marker displacements, shape (n_markers, 3), mm; float32, shape (n_vertices, 3)."""
         return self.face.positions + self.skin.deform(displacements)
@@ -73,7 +65,7 @@ def frames(
     style : one of `STYLES`; without a rig only markers can be drawn
     Raises `UserFacingError` on a machine without GL.
     """
-    from gpu.gl.camera import Camera
+    from gpu.gl.camera import Camera, portrait_bounds
     from gpu.gl.face import FaceRenderer, Style
     from gpu.gl.offscreen import OffscreenRenderer
 
@@ -85,7 +77,7 @@ def frames(
         try:
             if rig is not None and style != "markers":
                 renderer.set_face(rig.face)
-                camera = Camera.front(rig.framing_mm)
+                camera = Camera.front(portrait_bounds(rig.face))
             else:
                 rest = motion.markers.rest
                 camera = Camera.front(np.stack([rest.min(axis=0), rest.max(axis=0)]))

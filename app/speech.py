@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from core.errors import UserFacingError
@@ -40,7 +40,6 @@ def load_speech(
     """
     from core.speech.aligner import align, recognise
     from core.speech.lexicon import read_lexicon
-
     from core.speech.transcript_files import read_transcript
 
     if text is not None and phones is not None:
@@ -54,10 +53,7 @@ def load_speech(
         said = read_text(text)
         return LoadedSpeech(audio, align(audio, said, lexicon=words, progress=progress), said, False)
     said, transcript = recognise(audio, lexicon=words, progress=progress)
-    heard = (
-        f"No transcript was given; recognised: “{said}”." if said else "No transcript was given, and no speech heard."
-    )
-    return LoadedSpeech(audio, replace(transcript, warnings=(heard, *transcript.warnings)), said, True)
+    return LoadedSpeech(audio, transcript, said, True)
 
 
 def read_text(text: str) -> str:

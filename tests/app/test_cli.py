@@ -257,8 +257,13 @@ def test_bad_corpora_are_one_sentence_and_leave_nothing(efase, tmp_path):
     (folder / "one.c3d").write_bytes((folder / "one.c3d").read_bytes()[:700])
     assert refused()
     corpus_folder(folder, moving_markers())
-    for text in ("sentence\none\n", "sentence,emotion\n", "sentence,emotion\none,rage\n", "sentence,emotion\n../one,anger\n",
-                 "sentence,emotion,motion\none,neutral,../../etc/passwd\n"):  # fmt: skip
+    for text in (
+        "sentence\none\n",
+        "sentence,emotion\n",
+        "sentence,emotion\none,rage\n",
+        "sentence,emotion\n../one,anger\n",
+        "sentence,emotion,motion\none,neutral,../../etc/passwd\n",
+    ):
         (folder / "corpus.csv").write_text(text)
         assert refused(), text
 
