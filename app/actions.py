@@ -1,0 +1,65 @@
+"""Everything that can be done, once: each action has a name, a shortcut and a place in a menu."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QEvent, QObject, Qt
+from PySide6.QtGui import QAction, QActionGroup, QKeySequence
+from PySide6.QtWidgets import QAbstractButton, QComboBox, QMainWindow, QMenu
+
+from app import texts
+from app.export import FRAME_RATES
+
+
+class Actions:
+    """Makes the menus of a window; ``by_name`` finds an action again."""
+
+    def __init__(self, window: QMainWindow) -> None:
+        self._window = window
+        self.by_name: dict[str, QAction] = {}
+
+    def menu(self, title: str) -> QMenu:
+        """Add a menu to the bar."""
+        return self._window.menuBar().addMenu(title)
+
+    def add(self, menu: QMenu, name: str, text: str, keys: str | list[str], done: Callable[[], None]) -> QAction:
+        """Add an action; ``keys`` are its shortcuts as Qt spells them."""
+        action = QAction(text, self._window)
+        sequences = [keys] if isinstance(keys, str) else keys
+        action.setShortcuts([QKeySequence(key) for key in sequences if key])
+        action.triggered.connect(lambda: done())
+        menu.addAction(action)
+        self.by_name[name] = action
+        return action
+
+    def add_choice(
+        self, menu: QMenu, title: str, options: dict[str, str], chosen: str, done: Callable[[str], None]
+    ) -> QActionGroup:
+        """Add a submenu of which one entry is chosen; options are key to text."""
+        submenu = menu.addMenu(title)
+        group = QActionGroup(self._window)
+        for key, text in options.items():
+            action = submenu.addAction(text)
+            action.setCheckable(True)
+            action.setChecked(key == chosen)
+            action.triggered.connect(lambda _=False, key=key: done(key))
+            group.addAction(action)
+            self.by_name[f"{title}/{key}"] = action
+        return group
+
+
+def frame_rate_options() -> dict[str, str]:
+    """Return the output rates as a menu shows them."""
+    return {name: texts.FRAME_RATE_ITEM.format(name=name) for name in FRAME_RATES}
+
+
+class ButtonKeys(QObject):
+    """Leaves Space to a button or list that was reached by Tab; everywhere else it plays."""
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.ShortcutOverride and isinstance(watched, QAbstractButton | QComboBox):
+            if event.key() in (Qt.Key.Key_Space, Qt.Key.Key_Return, Qt.Key.Key_Enter) and not event.modifiers():
+                event.accept()
+                return True
+        return False

@@ -1,0 +1,182 @@
+"""A view of a face or its markers in 3D that can be turned."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import replace
+
+import numpy as np
+from PySide6.QtCore import QPointF, Qt
+from PySide6.QtOpenGLWidgets import QOpenGLWidget
+
+from app import texts
+from app.panels.marker_links import marker_links
+from app.pictures import FaceRig
+from core.motion.marker_set import MarkerSet
+from gpu.gl.camera import Camera
+from gpu.gl.face import FaceRenderer, Style
+
+log = logging.getLogger("gpu")
+
+_DEGREES_PER_PX = 0.4
+_ZOOM_PER_STEP = 1.15
+_LIP_COLOUR = (0.93, 0.66, 0.50)
+_MARKER_COLOUR = (0.80, 0.82, 0.85)
+_STEP_ANGLE = 120.0  # eighths of a degree in one notch of a wheel
+
+
+class FaceView(QOpenGLWidget):
+    """Shows one pose of a marker set, on a face or bare. GL objects live in the widget's own context."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        self.setToolTip(texts.ORBIT_TIP)
+        self._renderer: FaceRenderer | None = None
+        self._ctx = None
+        self._markers: MarkerSet | None = None
+        self._rig: FaceRig | None = None
+        self._displacements: np.ndarray | None = None
+        self._style = Style.SHADED
+        self._front: dict[bool, Camera] = {}
+        self._camera: dict[bool, Camera] = {}
+        self._drag_from: QPointF | None = None
+        self._stale = {"face": True, "markers": True, "pose": True}
+
+    # What is shown
+
+    def set_markers(self, markers: MarkerSet | None) -> None:
+        """Show another marker set, at rest."""
+        self._markers, self._displacements = markers, None
+        if markers is not None:
+            self._set_camera(False, np.stack([markers.rest.min(axis=0), markers.rest.max(axis=0)]))
+        self._renew("markers")
+
+    def set_rig(self, rig: FaceRig | None) -> None:
+        """Show another face, or none."""
+        self._rig = rig
+        if rig is not None:
+            skin = rig.face.positions[rig.face.vertices_of("skin")]
+            self._set_camera(True, np.stack([skin.min(axis=0), skin.max(axis=0)]))
+        self._renew("face")
+
+    def set_style(self, style: Style) -> None:
+        """Choose markers, wireframe or face; without a face there are markers."""
+        self._style = style
+        self._renew("pose")
+
+    def show_pose(self, displacements: np.ndarray | None) -> None:
+        """Show markers displaced from rest, shape (n_markers, 3), mm; None is the rest pose."""
+        self._displacements = displacements
+        self._renew("pose")
+
+    @property
+    def shows_mesh(self) -> bool:
+        """Whether a face is drawn, not markers."""
+        return self._rig is not None and self._style is not Style.MARKERS
+
+    # Camera
+
+    def frame_view(self) -> None:
+        """Look from the front, all in view."""
+        self._camera.update(self._front)
+        self.update()
+
+    def look_from_side(self) -> None:
+        """Look from the character's left."""
+        for key, front in self._front.items():
+            self._camera[key] = front.orbited(90.0, 0.0)
+        self.update()
+
+    @property
+    def camera(self) -> Camera | None:
+        """The camera that draws."""
+        return self._camera.get(self.shows_mesh)
+
+    def _set_camera(self, mesh: bool, bounds_mm: np.ndarray) -> None:
+        front = Camera.front(bounds_mm)
+        now = next(iter(self._camera.values()), None)
+        self._front[mesh] = front
+        self._camera[mesh] = front if now is None else replace(
+            front, azimuth_deg=now.azimuth_deg, elevation_deg=now.elevation_deg, zoom=now.zoom
+        )  # fmt: skip
+
+    def _move_camera(self, moved) -> None:
+        self._camera = {key: moved(camera) for key, camera in self._camera.items()}
+        self.update()
+
+    # Drawing
+
+    def _renew(self, what: str) -> None:
+        self._stale[what] = self._stale["pose"] = True
+        self.update()
+
+    def _upload(self, renderer: FaceRenderer) -> None:
+        if self._stale["face"] and self._rig is not None:
+            renderer.set_face(self._rig.face)
+            self._stale["face"] = False
+        if self._stale["markers"] and self._markers is not None:
+            colours = np.tile(_MARKER_COLOUR, (len(self._markers), 1))
+            colours[self._markers.group("lips")] = _LIP_COLOUR
+            renderer.set_markers(self._markers.rest, colours, marker_links(self._markers))
+            self._stale["markers"] = False
+        if self._stale["pose"] and self._markers is not None:
+            displacements = self._displacements
+            if displacements is None:
+                displacements = np.zeros((len(self._markers), 3), np.float32)
+            if self.shows_mesh:
+                renderer.set_positions(self._rig.deform(displacements))
+            else:
+                renderer.markers.set_positions(self._markers.rest + displacements)
+            self._stale["pose"] = False
+
+    def release(self) -> None:
+        """Free the GL objects, while the context is still there."""
+        if self._renderer is not None:
+            self.makeCurrent()
+            self._renderer.release()
+            self._renderer = None
+            self.doneCurrent()
+
+    # Qt
+
+    def initializeGL(self) -> None:
+        import moderngl
+
+        # a widget that is moved to another window comes here again with a new context
+        self._ctx = moderngl.create_context(require=330)
+        self._renderer = FaceRenderer(self._ctx)
+        self._stale = dict.fromkeys(self._stale, True)
+
+    def paintGL(self) -> None:
+        if self._renderer is None:
+            return
+        self._upload(self._renderer)
+        framebuffer = self._ctx.detect_framebuffer(self.defaultFramebufferObject())
+        self._renderer.draw(framebuffer, self.camera or Camera(), self._style if self.shows_mesh else Style.MARKERS)
+
+    def mousePressEvent(self, event) -> None:
+        self._drag_from = event.position()
+
+    def mouseMoveEvent(self, event) -> None:
+        if self._drag_from is None:
+            return
+        moved = event.position() - self._drag_from
+        self._drag_from = event.position()
+        pans = event.buttons() & (Qt.MouseButton.RightButton | Qt.MouseButton.MiddleButton)
+        if pans or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
+            half_px = max(self.height() / 2, 1)
+            self._move_camera(lambda camera: camera.panned(-moved.x() / half_px, moved.y() / half_px))
+        else:
+            turn = -moved.x() * _DEGREES_PER_PX, moved.y() * _DEGREES_PER_PX
+            self._move_camera(lambda camera: camera.orbited(*turn))
+
+    def mouseReleaseEvent(self, _event) -> None:
+        self._drag_from = None
+
+    def mouseDoubleClickEvent(self, _event) -> None:
+        self.frame_view()
+
+    def wheelEvent(self, event) -> None:
+        factor = _ZOOM_PER_STEP ** (event.angleDelta().y() / _STEP_ANGLE)
+        self._move_camera(lambda camera: camera.zoomed(factor))

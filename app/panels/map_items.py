@@ -1,0 +1,96 @@
+"""What can be seen on a phoneme map: one class for each thing that has a name."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import QPointF, QRectF, Qt, Signal
+
+from app.theme import EMOTION_SYMBOLS, colour, theme
+from core.speech.emotion import EMOTIONS
+
+Z_SPLATS, Z_DOTS, Z_TRAJECTORY, Z_MARKS = -10, 0, 5, 10
+
+DOT_PX = 5
+MARK_PX = 15
+_NO_POINTS = np.zeros((0, 2))
+
+
+class MapBox(pg.ViewBox):
+    """The plane of the map: wheel zooms, drag moves, and it says where the pointer is.
+
+    pointed(point), clicked(point), double_clicked(point) : map units
+    """
+
+    pointed = Signal(object)
+    clicked = Signal(object)
+    double_clicked = Signal(object)
+
+    def __init__(self) -> None:
+        super().__init__(lockAspect=True, enableMenu=False)
+
+    def hoverEvent(self, event) -> None:
+        self.pointed.emit(None if event.isExit() else _array(self.mapToView(event.pos())))
+
+    def mouseClickEvent(self, event) -> None:
+        if event.button() == Qt.MouseButton.LeftButton:
+            event.accept()
+            said = self.double_clicked if event.double() else self.clicked
+            said.emit(_array(self.mapToView(event.pos())))
+
+
+def _array(point: QPointF) -> np.ndarray:
+    return np.array([point.x(), point.y()])
+
+
+class SplatImage(pg.ImageItem):
+    """Where the frames lie and how densely."""
+
+    def __init__(self) -> None:
+        super().__init__(axisOrder="row-major")
+        self.setZValue(Z_SPLATS)
+
+    def show_splats(self, image: np.ndarray, bounds: tuple[float, float, float, float]) -> None:
+        """Show what `core.manifold.splat.splat_image` made for ``bounds``."""
+        left, bottom, right, top = bounds
+        self.setImage((image[::-1] * 255).astype(np.uint8), autoLevels=False, levels=(0, 255))
+        self.setRect(QRectF(left, bottom, right - left, top - bottom))
+
+
+class MotionFrameDots(pg.ScatterPlotItem):
+    """All frames of the cluster, each with its emotion's colour and symbol."""
+
+    def __init__(self) -> None:
+        super().__init__(size=DOT_PX, pxMode=True, pen=None)
+        self.setZValue(Z_DOTS)
+
+    def show_frames(self, points: np.ndarray, emotions: np.ndarray) -> None:
+        """Show frames at ``points``, shape (n, 2), with emotions as indices into `EMOTIONS`."""
+        brushes = np.array([pg.mkBrush(colour(theme().emotion[e], 0.85)) for e in EMOTIONS], object)
+        symbols = np.array([EMOTION_SYMBOLS[e] for e in EMOTIONS], object)
+        self.setData(pos=points, brush=brushes[emotions], symbol=symbols[emotions].tolist(), size=DOT_PX, pen=None)
+
+
+class NodeTrajectory(pg.PlotCurveItem):
+    """The way of one motion node over the map."""
+
+    def __init__(self, css: str, width_px: float) -> None:
+        super().__init__(pen=pg.mkPen(colour(css, 0.9), width=width_px), antialias=True)
+        self.setZValue(Z_TRAJECTORY)
+
+    def show_points(self, points: np.ndarray) -> None:
+        """Show a way, shape (n, 2); an empty one hides it."""
+        self.setData(points[:, 0], points[:, 1])
+
+
+class MapMark(pg.ScatterPlotItem):
+    """One sign on the map: the frame in use (a diamond) or the picked place (a ring)."""
+
+    def __init__(self, symbol: str, css: str, size_px: int = MARK_PX) -> None:
+        halo = pg.mkBrush(colour(theme().canvas, 0.55))
+        super().__init__(symbol=symbol, size=size_px, pen=pg.mkPen(colour(css), width=2), brush=halo, pxMode=True)
+        self.setZValue(Z_MARKS)
+
+    def show_at(self, point: np.ndarray | None) -> None:
+        """Move it, or hide it."""
+        self.setData(pos=_NO_POINTS if point is None else np.asarray(point)[None])

@@ -1,0 +1,1 @@
+"""What the animator works on: one observable document, and the edits that change it."""
