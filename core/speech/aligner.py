@@ -134,7 +134,9 @@ def _with_phones(
     for start_s, end_s, piece in _pieces(placed, sound.duration_s):
         progress.step(start_s / sound.duration_s, "placing the phonemes")
         timed = aligner.place_phones(sound, start_s, end_s, [word.index for word in piece])
-        result += timed or [replace(word, phones=_spread(word, said[word.index])) for word in piece]
+        if len(timed) < len(piece):
+            timed = [replace(word, phones=_spread(word, said[word.index])) for word in piece]
+        result += timed
     return result
 
 
@@ -198,9 +200,9 @@ def _quoted(run: Sequence[HeardWord], words: Sequence[str]) -> str:
 
 def _left_out(levels: np.ndarray, placed: Sequence[HeardWord], audio: Audio) -> list[str]:
     loud = loud_frames(levels)
-    edges = [0.0, *(max(edge, 0.0) for word in placed for edge in (word.start_s, word.end_s)), audio.duration_s]
+    edges = [0.0, *(edge for word in placed for edge in (word.start_s, word.end_s)), audio.duration_s]
     return [
-        f"From {start_s:.2f} to {end_s:.2f} s {audio.name} has sound that the text leaves out."
+        f"From {start_s:.2f} to {end_s:.2f} s there is speech in {audio.name} that the text leaves out."
         for start_s, end_s in zip(edges[::2], edges[1::2])
         if FRAME_S * loud[round(start_s / FRAME_S) : round(end_s / FRAME_S)].sum() >= _UNEXPLAINED_S
     ]

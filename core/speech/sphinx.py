@@ -93,14 +93,9 @@ class SphinxAligner:
         self._decode(sound.pcm(start_s, end_s))
         if self._decoder.hyp() is None:
             return []
-        origin_s = start_s - _PAD_S
+        clock = _Clock(start_s, end_s)
         placed = [s for s in self._decoder.seg() if s.word in self._variants]
-        return [
-            HeardWord(
-                _index(s.word), s.word, origin_s + s.start_frame * FRAME_S, origin_s + (s.end_frame + 1) * FRAME_S
-            )
-            for s in placed
-        ]
+        return [HeardWord(_index(s.word), s.word, clock(s.start_frame), clock(s.end_frame + 1)) for s in placed]
 
     def place_phones(self, sound: SphinxSound, start_s: float, end_s: float, words: Sequence[int]) -> list[HeardWord]:
         """Place words and their phones; memory grows with the square of the length, so for less than a minute."""
@@ -109,13 +104,12 @@ class SphinxAligner:
         self._decoder.set_alignment()
         self._decode(sound.pcm(start_s, end_s))
         alignment = self._decoder.get_alignment()
-        origin_s = start_s - _PAD_S
+        clock = _Clock(start_s, end_s)
         placed = []
         for entry in alignment or ():
             if entry.name not in self._variants:
                 continue
-            edges = [origin_s + part.start * FRAME_S for part in entry]
-            edges.append(origin_s + (entry.start + entry.duration) * FRAME_S)
+            edges = [*(clock(part.start) for part in entry), clock(entry.start + entry.duration)]
             mismatch = -entry.score / entry.duration
             phones = []
             at = 0
@@ -136,7 +130,8 @@ class SphinxRecogniser:
     """Recognises American English with pocketsphinx's general language model."""
 
     def __init__(self) -> None:
-        self._decoder = _decoder()
+        # 3,000 states a frame hear the same words in our trials as the default 30,000, in two thirds of the time
+        self._decoder = _decoder(maxhmmpf=3000)
 
     def words(self, sound: SphinxSound, start_s: float, end_s: float) -> list[HeardWord]:
         """Return the words heard in a stretch of sound; none in silence."""
@@ -145,14 +140,24 @@ class SphinxRecogniser:
         self._decoder.end_utt()
         if self._decoder.hyp() is None:
             return []
-        origin_s = start_s - _PAD_S
+        clock = _Clock(start_s, end_s)
         spoken = [s for s in self._decoder.seg() if s.word[0] not in "<[+"]
         return [
-            HeardWord(
-                i, s.word.partition("(")[0], origin_s + s.start_frame * FRAME_S, origin_s + (s.end_frame + 1) * FRAME_S
-            )
+            HeardWord(i, s.word.partition("(")[0], clock(s.start_frame), clock(s.end_frame + 1))
             for i, s in enumerate(spoken)
         ]
+
+
+@dataclass(frozen=True)
+class _Clock:
+    """Turns frames of a padded stretch into seconds of the whole sound."""
+
+    start_s: float
+    end_s: float
+
+    def __call__(self, frame: int) -> float:
+        time_s = round(self.start_s - _PAD_S + frame * FRAME_S, 6)
+        return min(max(time_s, self.start_s), self.end_s)
 
 
 def _decoder(**settings):
