@@ -19,6 +19,7 @@ MOUTH_DEPTH = 0.9
 LASH_REACH = 0.08
 BALL_ROUNDNESS = 0.6
 TALL = 0.4
+LIP_PULL = 0.12
 
 
 @dataclass(frozen=True)
@@ -27,10 +28,12 @@ class Attachments:
 
     on_surface : bool; skin and mouth socket, moved by the markers along the surface
     jaw_share : float64, 0..1; how much of the jaw's motion a vertex takes (of what the skin leaves over)
+    skin_share : float64, 0..1; 1 on the skin, falling to 0 where the mouth socket leaves the lips
     follows : int; the surface vertex that a lash or the like is rooted at, -1 for none
     """
 
     on_surface: np.ndarray
+    skin_share: np.ndarray
     jaw_share: np.ndarray
     follows: np.ndarray
 
@@ -39,10 +42,11 @@ def attach(face: Face, marker_vertices: np.ndarray) -> Attachments:
     """Decide for every vertex of ``face`` what moves it.
 
     Lower teeth and tongue follow the jaw, upper teeth and eyeballs the head, lashes the skin at their roots. The mouth
-    socket fades from the lips to the jaw below and the head above. Pieces of the part ``skin`` or ``other`` that
-    carry no marker, as in a user's file without parts, go by their place: inside the mouth and below the mouth line
-    to the jaw, above it to the head (gums and tongue in one piece bend between the two); elsewhere round ones
-    (eyeballs) to the head; thin ones close to the skin (tear lines, brows) with the skin; all else to the head.
+    socket, or what of the skin lines the mouth, fades from the lips to the jaw below and the head above. Pieces of
+    the part ``skin`` or ``other`` that carry no marker, as in a user's file without parts, go by their place: inside
+    the mouth and below the mouth line to the jaw, above it to the head (gums and tongue in one piece bend between the
+    two); elsewhere round ones (eyeballs) to the head; thin ones close to the skin (tear lines, brows) with the skin;
+    all else to the head.
     """
     surface = np.isin(face.part, [PARTS.index(part) for part in SKIN_PARTS])
     welded = seam_partners(face.positions, face.triangles)
@@ -54,7 +58,7 @@ def attach(face: Face, marker_vertices: np.ndarray) -> Attachments:
     follows = np.full(len(face.positions), -1)
     mouth = _Mouth.of(face)
     if mouth is not None:
-        socket = face.part == PARTS.index("mouth_socket")
+        socket = (face.part == PARTS.index("mouth_socket")) | (on_surface & mouth.walls(face.positions))
         jaw_share[socket] = mouth.below(face.positions[socket])
     roots = cKDTree(face.positions[on_surface])
     surface_vertices = np.flatnonzero(on_surface)
@@ -72,7 +76,20 @@ def attach(face: Face, marker_vertices: np.ndarray) -> Attachments:
             jaw_share[vertices] = below if tall else float(below.mean() > 0.5)
         elif mouth is not None and _thin(place) and roots.query(place)[0].max() < LASH_REACH * mouth.scale:
             follows[vertices] = surface_vertices[roots.query(place)[1]]
-    return Attachments(on_surface, jaw_share, follows)
+    return Attachments(on_surface, _skin_share(face, on_surface, mouth), jaw_share, follows)
+
+
+def _skin_share(face: Face, on_surface: np.ndarray, mouth: _Mouth | None) -> np.ndarray:
+    # lips pull only the nearest of the socket along: all of it would come out through the cheeks
+    share = np.ones(len(face.positions))
+    socket = on_surface & (face.part == PARTS.index("mouth_socket"))
+    at_rim = face.triangles[socket[face.triangles].any(axis=1) & ~socket[face.triangles].all(axis=1)]
+    rim = np.setdiff1d(at_rim, np.flatnonzero(socket))
+    if mouth is not None and len(rim):
+        gap = cKDTree(face.positions[rim]).query(face.positions[socket])[0]
+        t = np.clip(1.0 - gap / (LIP_PULL * mouth.scale), 0.0, 1.0)
+        share[socket] = t * t * (3.0 - 2.0 * t)
+    return share
 
 
 def _root(strip: np.ndarray, roots: cKDTree) -> np.ndarray:
@@ -109,6 +126,12 @@ class _Mouth:
         across, up, ahead = point - self.middle
         inside = abs(across) < 1.2 * self.half_width and abs(up) < 0.45 * self.scale
         return inside and -MOUTH_DEPTH * self.scale < ahead < 0.3 * self.scale
+
+    def walls(self, points: np.ndarray) -> np.ndarray:
+        """Tell which points of a skin lie so far behind the mouth corners that they must be the mouth's own lining."""
+        across, up, ahead = (points - self.middle).T
+        inside = (np.abs(across) < self.half_width) & (np.abs(up) < 0.3 * self.scale)
+        return inside & (ahead < -0.1 * self.scale) & (ahead > -MOUTH_DEPTH * self.scale)
 
     def below(self, points: np.ndarray) -> np.ndarray:
         """Return 1 well below the line between the corners, 0 well above, smooth between."""

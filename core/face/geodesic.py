@@ -36,8 +36,9 @@ def surface_distances(positions: np.ndarray, triangles: np.ndarray, sources: np.
         solver = potpourri3d.MeshHeatMethodDistanceSolver(positions[vertices].astype(float), local.reshape(-1, 3))
         for k in np.flatnonzero(piece[same[sources]] == number):
             source = int(np.searchsorted(vertices, same[sources[k]]))
-            distances[k, vertices] = np.maximum(solver.compute_distance(source), 0.0)
-            distances[k, vertices[source]] = 0.0
+            straight = np.linalg.norm(positions[vertices].astype(float) - positions[vertices[source]], axis=1)
+            # within an edge or two of the source the heat method falls short, and no way is shorter than straight
+            distances[k, vertices] = np.maximum(solver.compute_distance(source), straight)
     return distances[:, same]
 
 

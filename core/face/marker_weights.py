@@ -11,7 +11,8 @@ SIGMA = 0.45
 REACH = 3.0
 NEIGHBOURS = 6  # fewer see only the close row of a lip and leave steps between its columns
 RESTING_WEIGHT = 0.05
-SMOOTHING = 0.55  # passes of smoothing for one edge length a marker spacing, squared
+GAP = 1.5  # width, in distances to the nearest marker, where markers are far
+SMOOTHING = 0.15  # passes of smoothing for one edge length a marker spacing, squared
 NEGLIGIBLE = 1e-3
 
 
@@ -32,7 +33,7 @@ def marker_weights(
     """
     distance = surface_distances(positions, triangles, markers)
     spacing = local_spacing(distance, markers)
-    near = distance / (sigma * spacing)
+    near = distance / (sigma * _width(distance, spacing, markers))
     fade = np.clip((reach - near) / (reach / 3.0), 0.0, 1.0)
     raw = np.exp(-np.square(np.minimum(near, 40.0)) / 2.0) * fade * fade * (3.0 - 2.0 * fade)
     weights = csr_matrix((raw / (raw.sum(axis=0) + RESTING_WEIGHT)).T)
@@ -54,8 +55,17 @@ def local_spacing(distance: np.ndarray, markers: np.ndarray) -> np.ndarray:
     return np.where(total > 0, own @ pull / np.where(total > 0, total, 1.0), np.median(own))
 
 
+def _width(distance: np.ndarray, spacing: np.ndarray, markers: np.ndarray) -> np.ndarray:
+    """Widen the spacing in the gap between dense and sparse markers, such as lips and chin; shape (V,).
+
+    There the spacing is still that of the lips, and the skin would hang back between two regions that both move.
+    """
+    gap = np.minimum(GAP * distance.min(axis=0), np.quantile(spacing[markers], 0.75))
+    return (spacing**4 + gap**4) ** 0.25
+
+
 def _smoothed(weights: csr_matrix, positions: np.ndarray, triangles: np.ndarray, spacing: float) -> csr_matrix:
-    """Average the weights along the surface over a third of a marker spacing, which takes out the last creases."""
+    """Average the weights along the surface over a fifth of a marker spacing, which takes out the last creases."""
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     length = np.linalg.norm(positions[edges[:, 0]] - positions[edges[:, 1]], axis=1).astype(float)
     near_markers = np.asarray(weights.sum(axis=1)).ravel()[edges[:, 0]] > 0.5

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import csr_matrix, diags
 
 from core.face.attachments import attach
 from core.face.face import PARTS, Face
@@ -13,7 +13,7 @@ from core.face.jaw import JawHinge
 from core.face.marker_weights import REACH, SIGMA, marker_weights
 from core.motion.marker_set import MarkerSet
 
-DAMPING = 0.003  # how much a marker's own vertex may lag so that vertices between markers do not overshoot
+DAMPING = 0.001  # how much a marker's own vertex may lag so that vertices between markers do not overshoot
 
 
 @dataclass(frozen=True)
@@ -55,6 +55,7 @@ class MarkerSkin:
         attached = attach(face, marker_vertices)
         triangles = face.triangles[attached.on_surface[face.triangles].all(axis=1)]
         weights = marker_weights(face.positions, triangles, marker_vertices, sigma, reach)
+        weights = csr_matrix(diags(attached.skin_share) @ weights)
         at_markers = weights[marker_vertices].toarray()
         drive = np.linalg.solve(at_markers.T @ at_markers + DAMPING * np.eye(len(at_markers)), at_markers.T)
         covered = np.asarray(weights.sum(axis=1)).ravel()
