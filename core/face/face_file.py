@@ -13,6 +13,7 @@ from core.errors import UserFacingError
 from core.face.face import PARTS, Face
 
 FORMAT = 1
+UNREADABLE = (OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile, zlib.error)
 
 
 def save_face(face: Face, path: Path) -> None:
@@ -45,23 +46,30 @@ def write_arrays(path: Path, **arrays: np.ndarray) -> None:
         beside.unlink(missing_ok=True)
 
 
+def read_arrays(path: Path) -> dict[str, np.ndarray]:
+    """Read what `write_arrays` wrote; raises one of `UNREADABLE`."""
+    # np.load leaves a file that it opened itself open when it is no archive
+    with open(path, "rb") as file, np.load(file, allow_pickle=False) as data:
+        return dict(data)
+
+
 def read_face(path: Path) -> Face:
     """Read what `save_face` wrote; `UserFacingError` if the file is missing, damaged or another version's."""
     try:
-        with np.load(path, allow_pickle=False) as data:
-            if int(data["format"]) != FORMAT:
-                raise UserFacingError(f"{path} is a face of another version of the workstation.")
-            face = Face(
-                name=str(data["name"]),
-                positions=data["positions"],
-                triangles=data["triangles"],
-                part=data["part"],
-                uv=data["uv"] if len(data["uv"]) else None,
-                landmarks=dict(zip(data["landmark_names"].tolist(), data["landmark_vertices"].tolist())),
-                units=dict(zip(data["unit_names"].tolist(), data["units"])),
-                credit=str(data["credit"]),
-            )
-    except (OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile, zlib.error) as error:
+        data = read_arrays(path)
+        if int(data["format"]) != FORMAT:
+            raise UserFacingError(f"{path} is a face of another version of the workstation.")
+        face = Face(
+            name=str(data["name"]),
+            positions=data["positions"],
+            triangles=data["triangles"],
+            part=data["part"],
+            uv=data["uv"] if len(data["uv"]) else None,
+            landmarks=dict(zip(data["landmark_names"].tolist(), data["landmark_vertices"].tolist())),
+            units=dict(zip(data["unit_names"].tolist(), data["units"])),
+            credit=str(data["credit"]),
+        )
+    except UNREADABLE as error:
         raise UserFacingError(f"{path} is not a readable face file.") from error
     _check(face, path)
     return face

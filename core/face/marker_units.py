@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from core.face.face import Face
-from core.face.face_file import write_arrays
+from core.face.face_file import read_arrays, write_arrays
 from core.face.marker_placement import ACTRESS_FILE, MarkerPlacement, load_marker_file, marker_set_on
 from core.motion.marker_set import MarkerSet
 
@@ -54,10 +54,10 @@ def write_marker_units(face: Face, path: Path = MARKER_UNITS_FILE) -> None:
 def load_marker_units(path: Path = MARKER_UNITS_FILE) -> MarkerUnits:
     """Read the bundled file; needs no face and no network."""
     placement = load_marker_file(ACTRESS_FILE)
-    with np.load(path, allow_pickle=False) as data:
-        names = tuple(data["marker_names"].tolist())
-        markers = MarkerSet(names, data["rest"], placement.groups, placement.landmarks)
-        return MarkerUnits(markers, placement.kept, tuple(data["unit_names"].tolist()), data["moves"])
+    data = read_arrays(path)
+    names = tuple(data["marker_names"].tolist())
+    markers = MarkerSet(names, data["rest"], placement.groups, placement.landmarks)
+    return MarkerUnits(markers, placement.kept, tuple(data["unit_names"].tolist()), data["moves"])
 
 
 if __name__ == "__main__":

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-import zipfile
-import zlib
 from pathlib import Path
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
 from core.face.face import Face
-from core.face.face_file import write_arrays
+from core.face.face_file import UNREADABLE, read_arrays, write_arrays
 from core.face.jaw import JawHinge
 from core.face.marker_weights import REACH, SIGMA
 from core.face.skinning import MarkerSkin
@@ -67,12 +65,11 @@ def _arrays(skin: MarkerSkin) -> dict[str, np.ndarray]:
 
 def _read(path: Path, n_vertices: int, n_markers: int) -> MarkerSkin | None:
     try:
-        with np.load(path, allow_pickle=False) as stored:
-            a = dict(stored)
+        a = read_arrays(path)
         weights = csr_matrix((a["data"], a["indices"], a["indptr"]), shape=tuple(a["shape"]))
         weights.check_format(full_check=True)
         jaw = (a["jaw_markers"], a["jaw_vertices"], a["jaw_share"], a["jaw_points"])
         skin = MarkerSkin(weights, a["drive"], float(a["scale"]), *jaw, JawHinge(a["hinge"], a["chin"]))
-    except (OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile, zlib.error):
+    except UNREADABLE:
         return None
     return skin if weights.shape == (n_vertices, n_markers) else None
