@@ -16,8 +16,9 @@ HEAD_PARTS = ("upper_teeth", "eye_left", "eye_right")
 
 # Sizes of the rules for pieces without a part, as fractions of the face's scale (its outer eye distance).
 MOUTH_DEPTH = 0.9
-LASH_REACH = 0.08
-BALL_ROUNDNESS = 0.6
+ROOT_GAP = 0.03
+LASH_LENGTH = 0.2
+BALL_ROUNDNESS = 0.45
 TALL = 0.4
 LIP_PULL = 0.12
 
@@ -45,7 +46,7 @@ def attach(face: Face, marker_vertices: np.ndarray) -> Attachments:
     socket, or what of the skin lines the mouth, fades from the lips to the jaw below and the head above. Pieces of
     the part ``skin`` or ``other`` that carry no marker, as in a user's file without parts, go by their place: inside
     the mouth and below the mouth line to the jaw, above it to the head (gums and tongue in one piece bend between the
-    two); elsewhere round ones (eyeballs) to the head; thin ones close to the skin (tear lines, brows) with the skin;
+    two); elsewhere round ones (eyeballs) to the head; thin ones close to the skin (tear lines, lashes) with the skin;
     all else to the head.
     """
     surface = np.isin(face.part, [PARTS.index(part) for part in SKIN_PARTS])
@@ -74,8 +75,8 @@ def attach(face: Face, marker_vertices: np.ndarray) -> Attachments:
             below = mouth.below(place)
             tall = np.ptp(place[:, 1]) > TALL * mouth.scale
             jaw_share[vertices] = below if tall else float(below.mean() > 0.5)
-        elif mouth is not None and _thin(place) and roots.query(place)[0].max() < LASH_REACH * mouth.scale:
-            follows[vertices] = surface_vertices[roots.query(place)[1]]
+        elif mouth is not None and _thin(place) and _rooted(roots.query(place)[0], mouth.scale):
+            follows[vertices] = surface_vertices[_root(place, roots)]
     return Attachments(on_surface, _skin_share(face, on_surface, mouth), jaw_share, follows)
 
 
@@ -90,6 +91,10 @@ def _skin_share(face: Face, on_surface: np.ndarray, mouth: _Mouth | None) -> np.
         t = np.clip(1.0 - gap / (LIP_PULL * mouth.scale), 0.0, 1.0)
         share[socket] = t * t * (3.0 - 2.0 * t)
     return share
+
+
+def _rooted(gap: np.ndarray, scale: float) -> bool:
+    return np.quantile(gap, 0.25) < ROOT_GAP * scale and gap.max() < LASH_LENGTH * scale
 
 
 def _root(strip: np.ndarray, roots: cKDTree) -> np.ndarray:

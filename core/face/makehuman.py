@@ -56,7 +56,8 @@ HEAD_FLOOR_MM = -60.0
 BUST_CENTRE_MM = (0.0, -75.0, -50.0)
 BUST_RADIUS_MM = 165.0
 
-# Anatomical names to vertices of the base mesh.
+# Anatomical names to vertices of the base mesh. The lips are taken where they meet, as trackers of faces do; the
+# actress's own lower lip marker sits 3 mm below that.
 LANDMARKS = {
     "nose_bridge": 133,
     "nose_tip": 297,
