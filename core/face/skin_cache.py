@@ -16,7 +16,7 @@ from core.face.skinning import MarkerSkin
 from core.folders import cache_dir
 from core.motion.marker_set import MarkerSet
 
-VERSION = 1  # raise it when the fit changes, so that old files are not taken for new ones
+VERSION = 2  # raise it when the fit changes, so that old files are not taken for new ones
 
 
 def cached_skin(
