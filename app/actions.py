@@ -9,7 +9,9 @@ from PySide6.QtGui import QAction, QActionGroup, QKeySequence
 from PySide6.QtWidgets import QAbstractButton, QComboBox, QMainWindow, QMenu
 
 from app import texts
-from app.export import FRAME_RATES
+from core.media.video import FRAME_RATES
+
+_PRESS_KEYS = (Qt.Key.Key_Space, Qt.Key.Key_Return, Qt.Key.Key_Enter)
 
 
 class Actions:
@@ -58,8 +60,9 @@ class ButtonKeys(QObject):
     """Leaves Space to a button or list that was reached by Tab; everywhere else it plays."""
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.ShortcutOverride and isinstance(watched, QAbstractButton | QComboBox):
-            if event.key() in (Qt.Key.Key_Space, Qt.Key.Key_Return, Qt.Key.Key_Enter) and not event.modifiers():
-                event.accept()
-                return True
+        """Take Space and Return from the shortcuts while a button or list has the focus."""
+        is_key = event.type() == QEvent.Type.ShortcutOverride and isinstance(watched, QAbstractButton | QComboBox)
+        if is_key and event.key() in _PRESS_KEYS and not event.modifiers():
+            event.accept()
+            return True
         return False

@@ -54,6 +54,7 @@ class _Job(QRunnable):
         self._request, self._work = request, work
 
     def run(self) -> None:
+        """Do the work, on a worker."""
         answer, error = None, None
         try:
             if self.cancelled.is_set():

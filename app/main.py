@@ -106,7 +106,7 @@ def _start(window, project_or_audio: Path | None) -> None:
     from app.window import DEMO_START
 
     def begin() -> None:
-        window.authoring.open_demo()
+        window.authoring.open_database()
         if project_or_audio is None:
             window.authoring.open_demo_sentence(DEMO_START)
         else:

@@ -69,10 +69,10 @@ COST_TIP = (
     "COST of the best path (equation 4), in penalty units: 1 is PNT, the typical jump between two random\n"
     "motion nodes. The path is proved best: no other choice of nodes costs less."
 )
-COST_SLOT = "/{phone}/  {node}\nobservation {observation:.2f} · arriving {transition:.2f} · emotion {emotion:.2f}"
+COST_SLOT = "/{phone}/ by {node}: {cost:.2f}\nphone {observation:.2f} · join {transition:.2f} · emotion {emotion:.2f}"
 COST_SLOT_TIP = (
     "What the selected utterance adds to the cost, in penalty units: a phone that does not match,\n"
-    "the jump from the node before, an emotion that does not match."
+    "the join to the node before, an emotion that does not match."
 )
 
 # Panes
@@ -194,3 +194,5 @@ FRAME_RATE_ITEM = "{name} frames a second"
 SAVE_FILM = "Save video as…"
 THEME_NEXT_START = "The new theme dresses the window from the next start."
 SHOWING = "drawing the window"
+OPEN_MARKERS = "Where the markers sit on {face} (a CSV of marker,vertex)"
+FILTER_MARKERS = "Marker files (*.csv);;All files (*)"

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 from PySide6.QtGui import QColor, QFont, QPalette
 from PySide6.QtWidgets import QApplication
+
+_CHEVRON = (Path(__file__).resolve().parents[1] / "resources" / "icons" / "chevron.svg").as_posix()
 
 STEP = 8
 TEXT_PX = 13
@@ -116,10 +119,10 @@ def _style_sheet(t: Theme) -> str:
     QLabel[role="empty"] {{ color: {t.dim}; }}
     QLabel[role="badge"] {{ color: {t.accent}; font-size: {SMALL_PX}px; border: 1px solid {t.accent};
         border-radius: 3px; padding: 0 4px; }}
-    QPushButton, QComboBox, QToolButton[role="choose"] {{ background: {t.raised}; color: {t.text};
+    QPushButton, QComboBox {{ background: {t.raised}; color: {t.text};
         border: 1px solid {t.line}; border-radius: 4px; padding: 4px 8px; min-height: 16px; text-align: left; }}
-    QPushButton:hover, QComboBox:hover, QToolButton[role="choose"]:hover {{ border-color: {t.dim}; }}
-    QPushButton:focus, QComboBox:focus, QToolButton[role="choose"]:focus {{ border-color: {t.accent}; }}
+    QPushButton:hover, QComboBox:hover {{ border-color: {t.dim}; }}
+    QPushButton:focus, QComboBox:focus {{ border-color: {t.accent}; }}
     QPushButton:disabled {{ color: {t.dim}; }}
     QPushButton[role="primary"] {{ background: {t.accent}; color: {t.on_accent}; border-color: {t.accent};
         font-weight: 600; padding: 8px; text-align: center; }}
@@ -132,9 +135,11 @@ def _style_sheet(t: Theme) -> str:
     QPushButton[role="quiet"]:focus, QToolButton:focus {{ border-color: {t.line}; }}
     QPushButton[role="quiet"]:disabled, QToolButton:disabled {{ color: {t.line}; }}
     QToolButton:checked {{ color: {t.accent}; }}
-    QToolButton[role="choose"] {{ font-size: {TEXT_PX}px; }}
-    QToolButton::menu-indicator {{ image: none; }}
-    QComboBox::drop-down {{ border: none; width: 16px; }}
+    QPushButton::menu-indicator {{ image: url({_CHEVRON}); width: 12px; height: 12px;
+        subcontrol-position: right center; right: 6px; }}
+    QPushButton[role="choose"] {{ padding-left: 16px; }}
+    QComboBox::drop-down {{ border: none; width: 20px; }}
+    QComboBox::down-arrow {{ image: url({_CHEVRON}); width: 12px; height: 12px; }}
     QComboBox QAbstractItemView {{ background: {t.raised}; border: 1px solid {t.line};
         selection-background-color: {t.line}; selection-color: {t.text}; outline: none; }}
     QComboBox[role="small"] {{ font-size: {SMALL_PX}px; padding: 1px 6px; }}

@@ -10,8 +10,9 @@ from PySide6.QtWidgets import QApplication, QFileDialog, QMainWindow, QMessageBo
 
 from app import texts
 from app.actions import Actions, ButtonKeys, frame_rate_options
-from app.authoring import Authoring, SpeechRequest
+from app.authoring import Authoring
 from app.icons import icon
+from app.loading import SpeechRequest, face_beside_markers
 from app.panels.control import WIDTH_PX, ControlPanel
 from app.panels.isomap import IsomapPane
 from app.panels.message_bar import MessageBar
@@ -22,11 +23,10 @@ from app.panels.timeline import Timeline
 from app.panels.video import VideoPane
 from app.settings import last_folder, remember_folder, window_settings
 from core.document.change import Change
+from core.document.document import FaceChoice
 
 DEMO_START = "demo-neutral"
 _SIZE = (1600, 1000)
-_TEXT_SUFFIXES = (".txt",)
-_SOUND_SUFFIXES = (".wav", ".flac", ".ogg", ".oga", ".aiff", ".aif", ".mp3")
 _DATABASE_SUFFIXES = (".h5", ".hdf5")
 _FACE_SUFFIXES = (".obj", ".ply", ".glb", ".gltf", ".npz")
 
@@ -128,7 +128,7 @@ class MainWindow(QMainWindow):
         add(motion, "forward", texts.ACTION_FORWARD, "Right", lambda: authoring.step_frame(1))
         add(motion, "to_start", texts.ACTION_TO_START, "Home", lambda: authoring.seek(0.0))
         add(motion, "to_end", texts.ACTION_TO_END, "End", lambda: authoring.seek(authoring.player.duration_s))
-        a.add_choice(motion, texts.MENU_FRAME_RATE, frame_rate_options(), authoring.fps_name, self.on_frame_rate)
+        a.add_choice(motion, texts.MENU_FRAME_RATE, frame_rate_options(), authoring.film.fps_name, self.on_frame_rate)
 
         pins = a.menu(texts.MENU_MAP)
         add(pins, "pin", texts.ACTION_PIN, "P", self.isomap.pin_kept)
@@ -157,8 +157,7 @@ class MainWindow(QMainWindow):
         authoring, control = self.authoring, self.control
         authoring.failed.connect(self.message.say)
         authoring.noted.connect(self.status.say)
-        authoring.backend_changed.connect(self.status.show_backend)
-        authoring.film_changed.connect(self._enable_save)
+        authoring.film.changed.connect(self._enable_save)
         self.isomap.previewed.connect(self.preview.show_pick)
         self.preview.pin_asked.connect(self.isomap.pin_kept)
         control.speech_asked.connect(self.ask_speech)
@@ -193,7 +192,7 @@ class MainWindow(QMainWindow):
             return
         path = self._ask_file("speech", texts.OPEN_TRANSCRIPT, texts.FILTER_TRANSCRIPT)
         if path is not None:
-            self.authoring.load_speech(SpeechRequest(speech.audio.path, **_transcript(path)))
+            self.authoring.load_speech(SpeechRequest.with_file(Path(speech.audio.path), path))
 
     def ask_emotions(self) -> None:
         """Choose an emotion specification."""
@@ -205,7 +204,7 @@ class MainWindow(QMainWindow):
         """Choose a face."""
         path = self._ask_file("face", texts.OPEN_FACE, texts.FILTER_FACE)
         if path is not None:
-            self.authoring.set_face(str(path))
+            self._open_face(path)
 
     def ask_database(self) -> None:
         """Choose a motion database."""
@@ -215,14 +214,14 @@ class MainWindow(QMainWindow):
 
     def ask_save_film(self) -> None:
         """Choose where a copy of the film goes."""
-        if self.authoring.film is None:
+        if self.authoring.film.path is None:
             return
         start = Path(last_folder(self._settings, "film")) / "synthesis.avi"
         name, _ = QFileDialog.getSaveFileName(self, texts.SAVE_FILM, str(start), texts.FILTER_VIDEO)
         if name:
             path = Path(name) if Path(name).suffix.lower() == ".avi" else Path(f"{name}.avi")
             remember_folder(self._settings, "film", path)
-            self.authoring.save_film(path)
+            self.authoring.film.save(path)
 
     def open_file(self, path: Path) -> None:
         """Open whatever ``path`` is: speech, a motion database or a face."""
@@ -230,10 +229,18 @@ class MainWindow(QMainWindow):
         if suffix in _DATABASE_SUFFIXES:
             self.authoring.open_database(path)
         elif suffix in _FACE_SUFFIXES:
-            self.authoring.set_face(str(path))
+            self._open_face(path)
         else:
             self.message.hide()
-            self.authoring.load_speech(SpeechRequest(path, **_transcript_beside(path)))
+            self.authoring.load_speech(SpeechRequest.beside(path))
+
+    def _open_face(self, path: Path) -> None:
+        """A mesh alone does not tell where markers sit; ask for that file when it is not beside the mesh."""
+        face = face_beside_markers(path)
+        if face.marker_file is None:
+            markers = self._ask_file("face", texts.OPEN_MARKERS.format(face=path.name), texts.FILTER_MARKERS)
+            face = FaceChoice(face.name, None if markers is None else str(markers))
+        self.authoring.set_face(face)
 
     # Reactions
 
@@ -246,7 +253,7 @@ class MainWindow(QMainWindow):
 
     def on_frame_rate(self, name: str) -> None:
         """Take another output rate."""
-        self.authoring.set_frame_rate(name)
+        self.authoring.film.set_frame_rate(name)
         self.motion.on_playhead_moved(self.authoring.view.playhead_s)
 
     def on_theme(self, name: str) -> None:
@@ -271,7 +278,7 @@ class MainWindow(QMainWindow):
             getattr(view, how)()
 
     def _enable_save(self) -> None:
-        self.actions.by_name["save_film"].setEnabled(self.authoring.film is not None)
+        self.actions.by_name["save_film"].setEnabled(self.authoring.film.path is not None)
 
     def about(self) -> None:
         """Say what this is, and whose face and licences."""
@@ -300,6 +307,7 @@ class MainWindow(QMainWindow):
     # Qt
 
     def closeEvent(self, event) -> None:
+        """Remember the layout and stop everything."""
         self._save_layout()
         self.authoring.shut_down()
         for pane in (self.motion, self.preview):
@@ -309,36 +317,10 @@ class MainWindow(QMainWindow):
         super().closeEvent(event)
 
     def dragEnterEvent(self, event) -> None:
+        """Take files."""
         if event.mimeData().hasUrls() and event.mimeData().urls()[0].isLocalFile():
             event.acceptProposedAction()
 
     def dropEvent(self, event) -> None:
+        """Open a file."""
         self.open_file(Path(event.mimeData().urls()[0].toLocalFile()))
-
-
-def _transcript(path: Path) -> dict[str, str | Path]:
-    """A text file holds words, unless its first line is one of ``start end phone``."""
-    if path.suffix.lower() in _TEXT_SUFFIXES and not _holds_times(path):
-        return {"text": str(path)}
-    return {"phones": path}
-
-
-def _holds_times(path: Path) -> bool:
-    try:
-        with path.open(encoding="utf-8", errors="replace") as file:
-            columns = next((line.split() for line in file if line.strip() and not line.startswith("#")), [])
-    except OSError:
-        return False
-    try:
-        return len(columns) >= 3 and float(columns[0]) <= float(columns[1])
-    except ValueError:
-        return False
-
-
-def _transcript_beside(audio: Path) -> dict[str, str | Path]:
-    """Take the transcript that lies beside a sound file under its name."""
-    for suffix in (".TextGrid", ".textgrid", ".lab", ".txt"):
-        path = audio.with_suffix(suffix)
-        if path.is_file():
-            return _transcript(path)
-    return {}

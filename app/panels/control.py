@@ -14,21 +14,24 @@ from PySide6.QtWidgets import (
     QPlainTextEdit,
     QPushButton,
     QScrollArea,
-    QToolButton,
     QVBoxLayout,
     QWidget,
 )
 
 from app import texts
-from app.authoring import Authoring, SpeechRequest, whole_emotion
+from app.authoring import Authoring, whole_emotion
 from app.icons import dot
+from app.loading import SpeechRequest
 from app.panels.pane import ElidedLabel, label
 from app.theme import STEP, theme
 from core.document.change import Change
+from core.document.document import DEFAULT_FACE
 from core.speech.emotion import EMOTIONS
 
 WIDTH_PX = 272
 _TRANSCRIPT_PX = 72
+_OPEN = "open"
+_FACES = ((texts.FACE_DEFAULT, DEFAULT_FACE), (texts.FACE_NONE, None), (texts.OPEN_FACE, _OPEN))
 
 
 class ControlPanel(QWidget):
@@ -46,7 +49,6 @@ class ControlPanel(QWidget):
     def __init__(self, authoring: Authoring) -> None:
         super().__init__()
         self._authoring = authoring
-        self._backend = texts.BACKEND_WAITING
         self.setMinimumWidth(216)
         outer = QVBoxLayout(self)
         outer.setContentsMargins(0, 0, 0, 0)
@@ -128,11 +130,11 @@ class ControlPanel(QWidget):
     def on_face_chosen(self, row: int) -> None:
         """Show another face, or ask for a file."""
         what = self.face.itemData(row)
-        if what == "open":
+        if what == _OPEN:
             self._show_face()
             self.face_asked.emit()
         else:
-            self._authoring.set_face(None if what == "none" else what)
+            self._authoring.set_face(what)
 
     # Making
 
@@ -151,9 +153,8 @@ class ControlPanel(QWidget):
 
     def _make_speech(self) -> None:
         self._title(texts.SPEECH)
-        self.speech = QToolButton(text=texts.CHOOSE_SPEECH, toolTip=f"{texts.OPEN_SPEECH} (Ctrl+O)")
+        self.speech = QPushButton(texts.CHOOSE_SPEECH, toolTip=f"{texts.OPEN_SPEECH} (Ctrl+O)")
         self.speech.setProperty("role", "choose")
-        self.speech.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.speech.setSizePolicy(self.sizePolicy().Policy.Ignored, self.sizePolicy().Policy.Fixed)
         self.speech_menu = QMenu(self.speech)
         self.open_speech_action = self.speech_menu.addAction(texts.OPEN_SPEECH, lambda: self.speech_asked.emit())
@@ -199,7 +200,7 @@ class ControlPanel(QWidget):
     def _make_face(self) -> None:
         self._title(texts.FACE)
         self.face = QComboBox(toolTip=texts.FACE_TIP)
-        for text, data in ((texts.FACE_DEFAULT, "default"), (texts.FACE_NONE, "none"), (texts.OPEN_FACE, "open")):
+        for text, data in _FACES:
             self.face.addItem(text, data)
         self.face.activated.connect(self.on_face_chosen)
         self._column.addWidget(self.face)
@@ -221,8 +222,8 @@ class ControlPanel(QWidget):
     def _make_engine(self) -> None:
         self._title(texts.ENGINE)
         self._column.addWidget(QLabel(texts.ENGINE_NAME))
-        self.engine = ElidedLabel()
-        self.engine.setText(self._backend)
+        self.engine = label(texts.BACKEND_WAITING)
+        self.engine.setWordWrap(True)
         self._column.addWidget(self.engine)
 
     def _made_bottom(self) -> QWidget:
@@ -274,12 +275,12 @@ class ControlPanel(QWidget):
 
     def _show_face(self) -> None:
         face = self._authoring.document.face
-        while self.face.count() > 3:
+        while self.face.count() > len(_FACES):
             self.face.removeItem(0)
-        data = "none" if face is None else face
-        if self.face.findData(data) < 0:
-            self.face.insertItem(0, Path(face).name, face)
-        self.face.setCurrentIndex(self.face.findData(data))
+        if face not in (None, DEFAULT_FACE):
+            self.face.insertItem(0, Path(face.name).name, face)
+        rows = [row for row in range(self.face.count()) if self.face.itemData(row) == face]
+        self.face.setCurrentIndex(rows[0])
 
     def _show_database(self) -> None:
         database = self._authoring.document.database
@@ -306,10 +307,10 @@ class ControlPanel(QWidget):
         if slot is None or slot >= len(path.nodes):
             self.slot_cost.setText("")
             return
+        terms = path.observation[slot] / unit, path.transition[slot] / unit, path.emotion[slot] / unit
         self.slot_cost.setText(texts.COST_SLOT.format(
             phone=document.speech.transcript.phonemes[slot].phone, node=document.database.nodes.name(path.nodes[slot]),
-            observation=path.observation[slot] / unit, transition=path.transition[slot] / unit,
-            emotion=path.emotion[slot] / unit,
+            cost=sum(terms), observation=terms[0], transition=terms[1], emotion=terms[2],
         ))  # fmt: skip
 
     def _show_readiness(self) -> None:

@@ -13,7 +13,7 @@ from app import texts
 from app.panels.marker_links import marker_links
 from app.pictures import FaceRig
 from core.motion.marker_set import MarkerSet
-from gpu.gl.camera import Camera
+from gpu.gl.camera import Camera, portrait_bounds
 from gpu.gl.face import FaceRenderer, Style
 
 log = logging.getLogger("gpu")
@@ -56,8 +56,7 @@ class FaceView(QOpenGLWidget):
         """Show another face, or none."""
         self._rig = rig
         if rig is not None:
-            skin = rig.face.positions[rig.face.vertices_of("skin")]
-            self._set_camera(True, np.stack([skin.min(axis=0), skin.max(axis=0)]))
+            self._set_camera(True, portrait_bounds(rig.face))
         self._renew("face")
 
     def set_style(self, style: Style) -> None:
@@ -141,14 +140,15 @@ class FaceView(QOpenGLWidget):
     # Qt
 
     def initializeGL(self) -> None:
+        """Make the GL objects; a widget moved to another window comes here again, with a new context."""
         import moderngl
 
-        # a widget that is moved to another window comes here again with a new context
         self._ctx = moderngl.create_context(require=330)
         self._renderer = FaceRenderer(self._ctx)
         self._stale = dict.fromkeys(self._stale, True)
 
     def paintGL(self) -> None:
+        """Draw the pose."""
         if self._renderer is None:
             return
         self._upload(self._renderer)
@@ -156,9 +156,11 @@ class FaceView(QOpenGLWidget):
         self._renderer.draw(framebuffer, self.camera or Camera(), self._style if self.shows_mesh else Style.MARKERS)
 
     def mousePressEvent(self, event) -> None:
+        """Begin to turn or move."""
         self._drag_from = event.position()
 
     def mouseMoveEvent(self, event) -> None:
+        """Turn; with the right button or Shift, move."""
         if self._drag_from is None:
             return
         moved = event.position() - self._drag_from
@@ -172,11 +174,14 @@ class FaceView(QOpenGLWidget):
             self._move_camera(lambda camera: camera.orbited(*turn))
 
     def mouseReleaseEvent(self, _event) -> None:
+        """End the turn."""
         self._drag_from = None
 
     def mouseDoubleClickEvent(self, _event) -> None:
+        """Frame the view."""
         self.frame_view()
 
     def wheelEvent(self, event) -> None:
+        """Zoom."""
         factor = _ZOOM_PER_STEP ** (event.angleDelta().y() / _STEP_ANGLE)
         self._move_camera(lambda camera: camera.zoomed(factor))

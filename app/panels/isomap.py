@@ -23,9 +23,12 @@ from core.speech.emotion import EMOTIONS
 _SETTLED_MS = 150
 _SPLAT_PX = 384
 _SIGMA_PX = 9.0
-_RHO = 0.16
+# ρ follows the map: where its frames lie densest, the sum of equation 3 comes to this before it is clamped
+_DENSEST = 1.25
+_HIGHEST_RHO = 0.6
+_TRIAL_RHO = 1e-4
 # the splats lie under the dots and must not outshine them
-_SPLAT_OPACITY = 0.5
+_SPLAT_OPACITY = 0.6
 _SIGNS = {"neutral": "●", "happiness": "▲", "anger": "■", "sadness": "▼"}
 
 
@@ -232,8 +235,10 @@ class IsomapPane(Pane):
 
 
 def _splats(request: _SplatRequest, _progress: Progress):
-    image = splat_image(request.points, request.colours, _SIGMA_PX, _RHO, request.bounds, request.size)
-    return image, request.bounds
+    image = splat_image(request.points, request.colours, _SIGMA_PX, _TRIAL_RHO, request.bounds, request.size)
+    # equation 3 is linear in ρ until it is clamped, so one trial tells the picture of any ρ
+    rho = min(_DENSEST * _TRIAL_RHO / max(float(image.max()), 1e-12), _HIGHEST_RHO)
+    return np.minimum(image * (rho / _TRIAL_RHO), 1.0), request.bounds
 
 
 def _legend() -> str:

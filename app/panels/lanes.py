@@ -76,9 +76,10 @@ def paint_ruler(painter: QPainter, area: QRectF, scale: TimeScale, end_s: float)
         x = scale.x(i * step)
         painter.setPen(colour(theme().line))
         painter.drawLine(QLineF(x, area.top() + 4, x, area.bottom()))
-        painter.setPen(colour(theme().dim))
-        painter.drawText(QRectF(x + 4, area.top(), _TICK_PX, area.height()), Qt.AlignmentFlag.AlignVCenter,
-                         f"{i * step:.{digits}f} s")  # fmt: skip
+        text = f"{i * step:.{digits}f} s"
+        if x + 4 + painter.fontMetrics().horizontalAdvance(text) <= area.right():
+            painter.setPen(colour(theme().dim))
+            painter.drawText(QRectF(x + 4, area.top(), _TICK_PX, area.height()), Qt.AlignmentFlag.AlignVCenter, text)
 
 
 def paint_wave(painter: QPainter, area: QRectF, scale: TimeScale, peaks: Peaks, end_s: float) -> None:

@@ -30,9 +30,11 @@ class MapBox(pg.ViewBox):
         super().__init__(lockAspect=True, enableMenu=False)
 
     def hoverEvent(self, event) -> None:
+        """Say what is under the pointer."""
         self.pointed.emit(None if event.isExit() else _array(self.mapToView(event.pos())))
 
     def mouseClickEvent(self, event) -> None:
+        """Say what was clicked."""
         if event.button() == Qt.MouseButton.LeftButton:
             event.accept()
             said = self.double_clicked if event.double() else self.clicked
@@ -53,7 +55,10 @@ class SplatImage(pg.ImageItem):
     def show_splats(self, image: np.ndarray, bounds: tuple[float, float, float, float]) -> None:
         """Show what `core.manifold.splat.splat_image` made for ``bounds``."""
         left, bottom, right, top = bounds
-        self.setImage((image[::-1] * 255).astype(np.uint8), autoLevels=False, levels=(0, 255))
+        # light on the canvas, whatever its colour: brightness becomes coverage
+        cover = image.max(axis=2, keepdims=True)
+        painted = np.concatenate([image / np.maximum(cover, 1e-6), cover], axis=2)
+        self.setImage((painted[::-1] * 255).astype(np.uint8), autoLevels=False, levels=(0, 255))
         self.setRect(QRectF(left, bottom, right - left, top - bottom))
 
 

@@ -45,7 +45,7 @@ class MapPick:
 
     @classmethod
     def used(cls, database: MotionDatabase, phone: str, node: int, share: float) -> MapPick:
-        """Return the frame of ``node`` at relative time ``share`` (0..1), as the synthesis uses it, on ``phone``'s map."""
+        """Return the frame of ``node`` at relative time ``share`` (0..1), as it is used, on the map of ``phone``."""
         start, stop = int(database.nodes.start[node]), int(database.nodes.stop[node])
         place = min(max(share, 0.0), 1.0) * (stop - start - 1)
         low = int(place)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from app import texts
 from app.authoring import Authoring
-from app.export import FRAME_RATES
 from app.panels.face_view import FaceView
 from app.panels.pane import Choice, Pane
 from app.panels.transport import Transport
@@ -76,8 +75,8 @@ class MotionPane(Pane):
 
     def on_playhead_moved(self, time_s: float) -> None:
         """Show the frame at the playhead."""
-        fps_name = self._authoring.fps_name
-        self.transport.show_time(time_s, float(FRAME_RATES[fps_name]), fps_name)
+        film = self._authoring.film
+        self.transport.show_time(time_s, film.fps, film.fps_name)
         motion = self.motion
         if motion is not None:
             self.face_view.show_pose(motion.positions[self.frame] - motion.markers.rest)

@@ -28,6 +28,7 @@ class ElidedLabel(QLabel):
     def setText(self, text: str) -> None:
         """Show ``text``, as much of it as fits."""
         self._whole = text
+        self.updateGeometry()
         self._fit()
 
     @property
@@ -41,15 +42,18 @@ class ElidedLabel(QLabel):
         self.setToolTip(self._whole if shown != self._whole else "")
 
     def resizeEvent(self, event) -> None:
+        """Cut the text anew."""
         super().resizeEvent(event)
         self._fit()
 
     def minimumSizeHint(self):
+        """Give way to neighbours."""
         hint = super().minimumSizeHint()
         hint.setWidth(STEP)
         return hint
 
     def sizeHint(self):
+        """Ask for room for the whole text."""
         hint = super().sizeHint()
         hint.setWidth(self.fontMetrics().horizontalAdvance(self._whole) + 2)
         return hint

@@ -1,4 +1,4 @@
-"""The bottom line: what computes, what was just done, and what is being done, with a cross to stop it."""
+"""The bottom line: what was just done, and what is being done, with a cross to stop it."""
 
 from __future__ import annotations
 
@@ -25,9 +25,7 @@ class StatusLine(QWidget):
         row = QHBoxLayout(self)
         row.setContentsMargins(STEP + 4, 0, STEP, 0)
         row.setSpacing(2 * STEP)
-        self._backend = ElidedLabel()
         self._note = ElidedLabel()
-        row.addWidget(self._backend)
         row.addWidget(self._note, 1)
         self._job = label()
         self._bar = QProgressBar(maximum=_FULL, textVisible=False)
@@ -45,10 +43,6 @@ class StatusLine(QWidget):
     def say(self, sentence: str) -> None:
         """Show a note."""
         self._note.setText(sentence)
-
-    def show_backend(self, sentence: str) -> None:
-        """Show which compute backend searches."""
-        self._backend.setText(sentence)
 
     @property
     def note(self) -> str:

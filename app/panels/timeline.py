@@ -125,13 +125,16 @@ class Timeline(QWidget):
     # Qt
 
     def sizeHint(self) -> QSize:
+        """Ask for room for all lanes."""
         return QSize(800, _RULER_PX + _WAVE_PX + 2 * _BOX_PX + _EMOTION_PX + STEP // 2)
 
     def resizeEvent(self, event) -> None:
+        """Paint the lanes anew."""
         super().resizeEvent(event)
         self.renew()
 
     def paintEvent(self, _event) -> None:
+        """Paint the kept picture of the lanes, and the playhead over it."""
         painter = QPainter(self)
         if self._authoring.document.speech is None:
             painter.fillRect(self.rect(), colour(theme().canvas))
@@ -189,10 +192,12 @@ class Timeline(QWidget):
             painter.drawLine(0, round(area.top()), self.width(), round(area.top()))
 
     def mousePressEvent(self, event) -> None:
+        """Wait whether this is a click or a drag."""
         if event.button() == Qt.MouseButton.LeftButton and self._authoring.document.speech is not None:
             self._pressed_at, self._dragging = event.position().x(), False
 
     def mouseMoveEvent(self, event) -> None:
+        """Scrub."""
         if self._pressed_at is None:
             return
         x = event.position().x()
@@ -202,6 +207,7 @@ class Timeline(QWidget):
             self._authoring.seek(self.scale.time_s(x))
 
     def mouseReleaseEvent(self, event) -> None:
+        """Select what was clicked."""
         if self._pressed_at is not None and not self._dragging:
             x = event.position().x()
             slot = self._slot_at(x)
@@ -210,6 +216,7 @@ class Timeline(QWidget):
         self._pressed_at, self._dragging = None, False
 
     def wheelEvent(self, event) -> None:
+        """Zoom around the pointer; with Shift, or sideways, move."""
         across, along = event.angleDelta().x() / _STEP_ANGLE, event.angleDelta().y() / _STEP_ANGLE
         if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
             across, along = across + along, 0.0
@@ -220,6 +227,7 @@ class Timeline(QWidget):
         event.accept()
 
     def event(self, event) -> bool:
+        """Say in the tooltip what is under the pointer."""
         if event.type() == event.Type.ToolTip:
             self._describe(event)
             return True

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QRectF, Qt, QUrl
+from PySide6.QtCore import QRectF, Qt, QTimer, QUrl
 from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QPushButton, QWidget
 
 from app import texts
 from app.authoring import Authoring
-from app.export import FRAME_RATES
 from app.panels.pane import Pane
 from app.panels.transport import Transport
 from app.theme import colour, theme
+
+_FOLLOW_MS = 60
 
 
 class VideoView(QWidget):
@@ -38,6 +39,7 @@ class VideoView(QWidget):
         self.update()
 
     def paintEvent(self, _event) -> None:
+        """Paint the frame."""
         painter = QPainter(self)
         painter.fillRect(self.rect(), colour(theme().canvas))
         if self._image is None:
@@ -58,7 +60,7 @@ class VideoPane(Pane):
         self._player = None
         self.compose_button = QPushButton(texts.COMPOSE, toolTip=texts.COMPOSE_TIP)
         self.save_button = QPushButton(texts.SAVE_AS, toolTip=texts.SAVE_AS_TIP)
-        for button, asked in ((self.compose_button, authoring.compose), (self.save_button, None)):
+        for button, asked in ((self.compose_button, authoring.film.compose), (self.save_button, None)):
             button.setProperty("role", "quiet")
             button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
             if asked is not None:
@@ -68,17 +70,20 @@ class VideoPane(Pane):
         self.transport.play_asked.connect(self.on_play_asked)
         self.transport.seek_asked.connect(self.seek)
         self.footer.addWidget(self.transport, 1)
-        authoring.film_changed.connect(self.on_film_changed)
-        authoring.film_failed.connect(self.on_failed)
+        authoring.film.changed.connect(self.on_film_changed)
+        authoring.film.failed.connect(self.on_failed)
         authoring.jobs.started.connect(self._say_what_is_next)
         authoring.jobs.ended.connect(self._say_what_is_next)
         authoring.player.playing_changed.connect(self.on_motion_playing)
+        authoring.view.playhead_moved.connect(lambda _: self._follow_soon.start())
         self._failure = ""
+        self._follow_soon = QTimer(self, singleShot=True, interval=_FOLLOW_MS)
+        self._follow_soon.timeout.connect(self._follow)
         self.on_film_changed()
 
     def on_film_changed(self) -> None:
         """Show another film, from its start or from where the playhead stands."""
-        film = self._authoring.film
+        film = self._authoring.film.path
         self._failure = ""
         self.save_button.setEnabled(film is not None)
         if film is None:
@@ -113,6 +118,12 @@ class VideoPane(Pane):
         """Go to a time."""
         if self._player is not None:
             self._player.setPosition(round(1000 * time_s))
+
+    def _follow(self) -> None:
+        """Show the film where the playhead came to rest, unless something plays."""
+        playing = self._authoring.player.is_playing or (self._player is not None and self._player.isPlaying())
+        if not playing and self._authoring.film.path is not None:
+            self.seek(self._authoring.view.playhead_s)
 
     def on_failed(self, why: str) -> None:
         """Say in the pane why there is no video."""
@@ -149,17 +160,17 @@ class VideoPane(Pane):
             self.seek(self._authoring.view.playhead_s)
 
     def _show_time(self, position_ms: int) -> None:
-        fps_name = self._authoring.fps_name
-        self.transport.show_time(position_ms / 1000, float(FRAME_RATES[fps_name]), fps_name)
+        film = self._authoring.film
+        self.transport.show_time(position_ms / 1000, film.fps, film.fps_name)
 
     def _say_what_is_next(self, *_: object) -> None:
         authoring = self._authoring
         composing = authoring.jobs.is_running("film")
-        can_compose = authoring.document.answer is not None and authoring.film is None and not composing
+        can_compose = authoring.document.answer is not None and authoring.film.path is None and not composing
         self.compose_button.setEnabled(can_compose)
         if self._failure:
             self.show_empty(self._failure)
-        elif authoring.film is not None:
+        elif authoring.film.path is not None:
             self.show_content()
         elif composing:
             self.show_empty(texts.VIDEO_WAITING)

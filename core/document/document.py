@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import ClassVar, Protocol
 
@@ -22,6 +23,17 @@ class AlignedSpeech(Protocol):
     audio: Audio
     transcript: Transcript
     text: str
+
+
+@dataclass(frozen=True)
+class FaceChoice:
+    """A face by name: ``default``, or the path of a mesh, with the marker file that tells where its markers sit."""
+
+    name: str
+    marker_file: str | None = None
+
+
+DEFAULT_FACE = FaceChoice("default")
 
 
 class Edit(Protocol):
@@ -45,13 +57,13 @@ class Document:
     modifiers : emotion spans; one that covers all of the speech ends at infinity
     pins : slot to the public name of the motion node that is tied to it
     removed : public names of motion nodes that must not be used
-    face : ``default``, the path of a face file, or None for markers alone
+    face : None for markers alone
     answer : the motion that is shown, or None; until a new search answers it may be the one from before an edit
     """
 
     changed: ClassVar[Signal] = Signal(object, object)
 
-    def __init__(self, face: str | None = "default") -> None:
+    def __init__(self, face: FaceChoice | None = DEFAULT_FACE) -> None:
         self.database: MotionDatabase | None = None
         self.speech: AlignedSpeech | None = None
         self.modifiers: tuple[EmotionModifier, ...] = ()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from core.document.change import NOTHING, Change
-from core.document.document import AlignedSpeech, Document
+from core.document.document import AlignedSpeech, Document, FaceChoice
 from core.motion.database import MotionDatabase
 from core.speech.emotion import EmotionModifier
 
@@ -136,12 +136,12 @@ class PinMotionNode:
 class SetFace:
     """Show another face, or markers alone."""
 
-    face: str | None
-    before: str | None
+    face: FaceChoice | None
+    before: FaceChoice | None
     label: str = "Choose face"
 
     @classmethod
-    def on(cls, document: Document, face: str | None) -> SetFace:
+    def on(cls, document: Document, face: FaceChoice | None) -> SetFace:
         """Return the edit for ``document`` as it is now."""
         return cls(face, document.face)
 
@@ -153,7 +153,7 @@ class SetFace:
         """See `core.document.document.Edit`."""
         return self._set(document, self.before)
 
-    def _set(self, document: Document, face: str | None) -> Change:
+    def _set(self, document: Document, face: FaceChoice | None) -> Change:
         if document.face == face:
             return NOTHING
         document.face = face

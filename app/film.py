@@ -1,0 +1,129 @@
+"""The composed film of the motion on show, made in the background and kept until the motion changes."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from app import texts
+from app.export import VideoSettings, export
+from app.jobs import JobRunner
+from app.pictures import FaceRig
+from core.document.document import Document
+from core.errors import UserFacingError
+from core.media.audio import Audio
+from core.media.swap_in import swapped_in
+from core.media.video import FRAME_RATES
+from core.progress import Progress
+from core.synthesis.marker_motion import MarkerMotion
+
+_SIZE_PX = (800, 600)
+_COMPOSE_AFTER_MS = 400
+
+
+@dataclass(frozen=True)
+class _FilmRequest:
+    motion: MarkerMotion
+    audio: Audio
+    rig: FaceRig | None
+    settings: VideoSettings
+    path: Path
+
+
+class FilmComposer(QObject):
+    """Composes whenever the motion, the face or the frame rate changed and all is quiet.
+
+    changed() : see `path`, the film on disk, or None while there is none
+    failed(sentence) : why there is none
+    saved(path) : a copy was made
+    """
+
+    changed = Signal()
+    failed = Signal(str)
+    saved = Signal(str)
+
+    def __init__(self, document: Document, jobs: JobRunner, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.path: Path | None = None
+        self.fps_name = "30"
+        self._document, self._jobs = document, jobs
+        self._rig: FaceRig | None = None
+        self._folder = tempfile.TemporaryDirectory(prefix="efase-films-", ignore_cleanup_errors=True)
+        self._n_films = 0
+        self._soon = QTimer(self, singleShot=True, interval=_COMPOSE_AFTER_MS)
+        self._soon.timeout.connect(self.compose)
+
+    @property
+    def fps(self) -> float:
+        """Output frames a second."""
+        return float(FRAME_RATES[self.fps_name])
+
+    def set_frame_rate(self, name: str) -> None:
+        """Choose the output rate, one of `core.media.video.FRAME_RATES`."""
+        if name != self.fps_name:
+            self.fps_name = name
+            self.renew()
+
+    def set_rig(self, rig: FaceRig | None) -> None:
+        """Draw another face, or markers."""
+        self._rig = rig
+        self.renew()
+
+    def renew(self) -> None:
+        """The motion is another one: drop the film, and compose soon."""
+        self._jobs.cancel("film")
+        if self.path is not None:
+            self.path.unlink(missing_ok=True)
+            self.path = None
+            self.changed.emit()
+        if self._document.answer is not None:
+            self._soon.start()
+
+    def compose(self) -> None:
+        """Compose the film of the motion on show, if there is none yet."""
+        answer, speech = self._document.answer, self._document.speech
+        if answer is None or speech is None or self.path is not None or self._jobs.is_running("film"):
+            return
+        if self._jobs.is_running("face") or self._jobs.is_running("search"):
+            self._soon.start()
+            return
+        self._n_films += 1
+        path = Path(self._folder.name) / f"synthesis-{self._n_films}.avi"
+        width, height = _SIZE_PX
+        style = "face" if self._rig is not None else "markers"
+        settings = VideoSettings(fps=FRAME_RATES[self.fps_name], width=width, height=height, style=style)
+        request = _FilmRequest(answer.motion, speech.audio, self._rig, settings, path)
+        self._jobs.start("film", texts.COMPOSING, request, _compose, self._on_composed, self._on_failed)
+
+    def save(self, path: Path) -> None:
+        """Copy the film to ``path``."""
+        if self.path is not None:
+            request = (self.path, path)
+            self._jobs.start("save", texts.SAVING_FILM, request, _copy, lambda _: self.saved.emit(str(path)))
+
+    def shut_down(self) -> None:
+        """Remove the films."""
+        self._soon.stop()
+        self._folder.cleanup()
+
+    def _on_composed(self, path: Path) -> None:
+        self.path = path
+        self.changed.emit()
+
+    def _on_failed(self, error: UserFacingError) -> None:
+        self.failed.emit(str(error))
+
+
+def _compose(request: _FilmRequest, progress: Progress) -> Path:
+    export(request.motion, request.audio, request.rig, request.path, request.settings, progress)
+    return request.path
+
+
+def _copy(request: tuple[Path, Path], _progress: Progress) -> None:
+    source, target = request
+    with swapped_in(target) as beside:
+        shutil.copyfile(source, beside)

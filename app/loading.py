@@ -1,0 +1,120 @@
+"""What is read in the background: databases, speech, faces. Functions for `app.jobs`; the slow imports are in them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from app import texts
+from app.pictures import FaceRig
+from core.document.document import AlignedSpeech, FaceChoice
+from core.media.audio import Audio
+from core.motion.database import MotionDatabase
+from core.motion.marker_set import MarkerSet
+from core.progress import Progress
+from core.search.engine import SearchEngine
+from core.speech.transcript import Transcript
+
+_TEXT_SUFFIX = ".txt"
+_BESIDE_SPEECH = (".TextGrid", ".textgrid", ".lab", ".txt")
+_BESIDE_FACE = (".markers.csv", ".csv")
+
+
+@dataclass(frozen=True)
+class SpeechRequest:
+    """Speech to load: a sound file, and its text (or a text file) or a transcript file, or neither."""
+
+    audio: Path
+    text: str | None = None
+    phones: Path | None = None
+
+    @classmethod
+    def with_file(cls, audio: Path, transcript: Path) -> SpeechRequest:
+        """Take a transcript file: a text file holds words, unless its first line is one of ``start end phone``."""
+        if transcript.suffix.lower() == _TEXT_SUFFIX and not _holds_times(transcript):
+            return cls(audio, text=str(transcript))
+        return cls(audio, phones=transcript)
+
+    @classmethod
+    def beside(cls, audio: Path) -> SpeechRequest:
+        """Take the transcript that lies beside a sound file under its name, if there is one."""
+        found = next((p for suffix in _BESIDE_SPEECH if (p := audio.with_suffix(suffix)).is_file()), None)
+        return cls(audio) if found is None else cls.with_file(audio, found)
+
+
+def face_beside_markers(mesh: Path) -> FaceChoice:
+    """Choose a mesh with the marker file that lies beside it under its name, if there is one."""
+    found = next((p for suffix in _BESIDE_FACE if (p := mesh.with_suffix(suffix)).is_file()), None)
+    return FaceChoice(str(mesh), None if found is None else str(found))
+
+
+@dataclass(frozen=True)
+class OpenedDatabase:
+    """A database with its engine, ready to search, and what computes."""
+
+    database: MotionDatabase
+    engine: SearchEngine
+    backend: str
+
+
+@dataclass(frozen=True)
+class BundledSpeech:
+    """A sentence that comes with the workstation."""
+
+    audio: Audio
+    transcript: Transcript
+    text: str
+
+
+@dataclass(frozen=True)
+class DemoSentence:
+    """Bundled speech and the emotion that it is spoken in."""
+
+    speech: BundledSpeech
+    emotion: str
+
+
+def open_motion_database(path: Path | None, progress: Progress) -> OpenedDatabase:
+    """Open a database (None: the demo's, which is built the first time) and price its transitions."""
+    from app.demo import demo_database
+    from core.motion.database import open_database
+    from gpu.device import open_kernels
+
+    progress.step(0.0, texts.OPENING_DATABASE)
+    database = demo_database(progress.part(0.0, 0.9)) if path is None else open_database(path)
+    kernels, backend = open_kernels()
+    engine = SearchEngine(database, kernels)
+    engine.prepare(progress.part(0.9, 1.0))
+    return OpenedDatabase(database, engine, backend)
+
+
+def load_demo_sentence(name: str, _progress: Progress) -> DemoSentence:
+    """Load a bundled sentence by name."""
+    from core.actress.corpus import demo_sentences, transcript_of
+    from core.media.audio import load_audio
+
+    spoken = next(s for s in demo_sentences() if s.sentence == name)
+    return DemoSentence(BundledSpeech(load_audio(spoken.audio), transcript_of(spoken), spoken.text), spoken.emotion)
+
+
+def read_speech(request: SpeechRequest, progress: Progress) -> AlignedSpeech:
+    """Read speech and align it."""
+    from app.speech import load_speech
+
+    return load_speech(request.audio, request.text, request.phones, progress=progress)
+
+
+def fit_face(request: tuple[FaceChoice, MarkerSet], progress: Progress) -> FaceRig:
+    """Bind a face to a marker set."""
+    face, markers = request
+    marker_file = None if face.marker_file is None else Path(face.marker_file)
+    return FaceRig.of(face.name, markers, marker_file, progress)
+
+
+def _holds_times(path: Path) -> bool:
+    try:
+        with path.open(encoding="utf-8", errors="replace") as file:
+            columns = next((line.split() for line in file if line.strip() and not line.startswith("#")), [])
+        return len(columns) >= 3 and float(columns[0]) <= float(columns[1])
+    except (OSError, ValueError):
+        return False
