@@ -7,6 +7,7 @@ corners 90 mm apart, y and z flipped so that y is up and z towards the camera.
 from __future__ import annotations
 
 import zipfile
+import zlib
 from importlib.resources import files
 from pathlib import Path
 
@@ -64,7 +65,8 @@ def read_tracked_points(folder: Path, progress: Progress = SILENT) -> Corpus:
 
 def _load(path: Path) -> dict[str, np.ndarray]:
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        # numpy leaves the file open when the archive is damaged, unless it is given an open one
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
             missing = [name for name in _ARRAYS if name not in archive.files]
             if missing:
                 raise UserFacingError(f"'{path}' has no array '{missing[0]}'.")
@@ -72,5 +74,5 @@ def _load(path: Path) -> dict[str, np.ndarray]:
             if oversized:
                 raise UserFacingError(f"'{oversized[0]}' in '{path}' is larger than {_MOST_BYTES >> 20} MiB.")
             return {name: archive[name] for name in _ARRAYS}
-    except (OSError, ValueError, zipfile.BadZipFile, EOFError, KeyError) as error:
+    except (OSError, ValueError, zipfile.BadZipFile, zlib.error, EOFError, KeyError, AttributeError) as error:
         raise UserFacingError(f"'{path}' is not a readable track file.") from error
