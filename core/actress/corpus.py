@@ -2,33 +2,36 @@
 
 from __future__ import annotations
 
-import csv
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
 from core.actress.capture import capture, head_motion, markers_of
 from core.actress.expression import manners
+from core.actress.labels import read_transcripts
 from core.actress.performance import bundled_marker_units, frame_times_s, perform
 from core.actress.randomness import Chance
-from core.actress.texts import DEMO_FOLDER
+from core.actress.texts import DEMO_FOLDER, bundled_lines
 from core.motion.marker_set import MarkerSet
 from core.motion.recording import Recording
 from core.progress import SILENT, Progress
-from core.speech.transcript import PhonemeUtterance, Transcript, WordUtterance
+from core.speech.transcript import Transcript
 
 RATE_HZ = 120.0
 CORPUS_NAME = "synthetic actress"
 
 
 class SpokenSentence(NamedTuple):
-    """One bundled sentence: its name, emotion and text, its sound, and its phone and word labels (xwaves)."""
+    """One bundled sentence: its name, emotion and text, and its sound.
+
+    phone_labels : the phones as a file of an aligner (xwaves); demo sentences only, else None
+    """
 
     sentence: str
     emotion: str
     text: str
     audio: Path
-    phone_labels: Path
-    word_labels: Path
+    phone_labels: Path | None
 
 
 def database_sentences() -> list[SpokenSentence]:
@@ -41,11 +44,19 @@ def demo_sentences() -> list[SpokenSentence]:
     return _sentences("demo")
 
 
+def tuning_sentences() -> list[SpokenSentence]:
+    """Return six sentences an emotion to tune the search with; their texts are in no database sentence."""
+    return _sentences("tuning")
+
+
+def comparison_sentences() -> list[SpokenSentence]:
+    """Return three sentences an emotion to compare methods on; their texts are in no other sentence."""
+    return _sentences("comparison")
+
+
 def transcript_of(spoken: SpokenSentence) -> Transcript:
-    """Read the bundled labels of a sentence; its duration is that of the sound."""
-    phonemes = [PhonemeUtterance(*label) for label in _labels(spoken.phone_labels)]
-    words = [WordUtterance(*label) for label in _labels(spoken.word_labels) if label[0] != "pau"]
-    return Transcript.covering(phonemes, words, phonemes[-1].end_s)
+    """Return what a bundled sentence says and when; its duration is that of the sound."""
+    return _bundled_transcripts()[spoken.sentence]
 
 
 def actress_marker_set() -> MarkerSet:
@@ -79,7 +90,7 @@ def record(spoken: SpokenSentence, rate_hz: float = RATE_HZ) -> Recording:
 
 
 def recordings(progress: Progress = SILENT) -> list[Recording]:
-    """Return the whole corpus, 12 sentences in each of the four emotions, made anew in a few seconds."""
+    """Return the whole database corpus, 45 sentences in each of the four emotions, made anew in a few seconds."""
     sentences = database_sentences()
     made = []
     for i, spoken in enumerate(sentences):
@@ -89,27 +100,20 @@ def recordings(progress: Progress = SILENT) -> list[Recording]:
     return made
 
 
+@cache
+def _bundled_transcripts() -> dict[str, Transcript]:
+    return read_transcripts(DEMO_FOLDER / "labels.csv")
+
+
 def _sentences(role: str) -> list[SpokenSentence]:
-    with open(DEMO_FOLDER / "sentences.csv", encoding="utf-8", newline="") as lines:
-        return [
-            SpokenSentence(
-                row["sentence"],
-                row["emotion"],
-                row["text"],
-                DEMO_FOLDER / "audio" / f"{row['sentence']}.flac",
-                DEMO_FOLDER / "labels" / f"{row['sentence']}.lab",
-                DEMO_FOLDER / "words" / f"{row['sentence']}.lab",
-            )
-            for row in csv.DictReader(lines)
-            if row["role"] == role
-        ]
-
-
-def _labels(path: Path) -> list[tuple[str, float, float]]:
-    """Read a bundled xwaves file: (label, start_s, end_s), each label beginning where the one before ends."""
-    labels, start_s = [], 0.0
-    for line in path.read_text(encoding="utf-8").partition("#\n")[2].splitlines():
-        end, _, name = line.split()
-        labels.append((name, start_s, float(end)))
-        start_s = float(end)
-    return labels
+    return [
+        SpokenSentence(
+            line.sentence,
+            line.emotion,
+            line.text,
+            DEMO_FOLDER / "audio" / f"{line.sentence}.ogg",
+            DEMO_FOLDER / "labels" / f"{line.sentence}.lab" if role == "demo" else None,
+        )
+        for line in bundled_lines()
+        if line.role == role
+    ]

@@ -1,8 +1,9 @@
 """The voice of the synthetic actress, made by Festival; only needed to remake the bundled speech.
 
-``python -m core.actress.speech OUT`` writes ``OUT/audio/*.flac`` (16 kHz mono), ``OUT/labels/*.lab`` (xwaves lines
-``end colour phone``) and ``OUT/words/*.lab`` (the same, silence as ``pau``). It asks for the program ``festival`` with
-the voice ``cmu_us_slt_arctic_hts`` and for the Python package ``pyworld``; the workstation itself never does.
+``python -m core.actress.speech OUT`` writes ``OUT/audio/*.ogg`` (Vorbis, 16 kHz mono), ``OUT/labels.csv`` (see
+`core.actress.labels`) and, to try an aligner's file with, ``OUT/labels/demo-*.lab`` (xwaves lines ``end colour
+phone``). It asks for the program ``festival`` with the voice ``cmu_us_slt_arctic_hts`` and for the Python package
+``pyworld``; the workstation itself never does.
 """
 
 from __future__ import annotations
@@ -12,19 +13,26 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from core.actress.labels import SentenceLabels, write_labels
 from core.actress.randomness import Chance
-from core.actress.texts import DEMO_FOLDER
+from core.actress.texts import DEMO_FOLDER, Line, bundled_lines
 from core.errors import UserFacingError
 from core.progress import SILENT, Progress
+from core.speech.phoneme import PAU
 
 RATE_HZ = 16000
-# One sentence differs from the next by this much in rate, so that no two emotions share their timing.
-RATE_VARIATION = 0.03
+# One sentence differs from the next by this much, so that no two emotions share their timing and none is sung alike.
+RATE_VARIATION = 0.05
+PITCH_VARIATION_SEMITONES = 0.6
+RANGE_VARIATION = 0.12
+LOUDNESS_VARIATION_DB = 0.8
+# libsndfile's scale, 0 best and 1 smallest; at this level nothing of the coding is heard.
+COMPRESSION_LEVEL = 0.4
 # Spectral tilt turns around this frequency, near the strongest harmonics of the voice.
 TILT_PIVOT_HZ = 500.0
 TILT_LIMIT_DB = 6.0
@@ -62,26 +70,48 @@ def speak_corpus(folder: Path, progress: Progress = SILENT) -> None:
         raise UserFacingError(
             "The program 'festival' is not installed.", "On Debian: apt install festival festvox-us-slt-hts."
         )
-    with open(DEMO_FOLDER / "sentences.csv", encoding="utf-8", newline="") as lines:
-        rows = list(csv.DictReader(lines))
-    voice_of = voices()
-    for name in ("audio", "labels", "words"):
+    lines = bundled_lines()
+    voice_of = {line.sentence: varied(voices()[line.emotion], line.sentence) for line in lines}
+    for name in ("audio", "labels"):
         (folder / name).mkdir(parents=True, exist_ok=True)
+    labels = {}
     with tempfile.TemporaryDirectory() as scratch:
         progress.step(0.0, "speaking with Festival")
-        _run_festival(rows, voice_of, Path(scratch))
-        for i, row in enumerate(rows):
-            name = row["sentence"]
-            progress.step((i + 1) / (len(rows) + 1), f"colouring {name}")
+        _run_festival(lines, voice_of, Path(scratch))
+        for i, line in enumerate(lines):
+            name = line.sentence
+            progress.step((i + 1) / (len(lines) + 1), f"colouring {name}")
             samples, rate_hz = soundfile.read(Path(scratch) / f"{name}.wav")
-            coloured = colour(samples, rate_hz, voice_of[row["emotion"]])
+            coloured = colour(samples, rate_hz, voice_of[name])
             coloured = soxr.resample(coloured, rate_hz, RATE_HZ)
-            soundfile.write(folder / "audio" / f"{name}.flac", coloured, RATE_HZ, subtype="PCM_16")
+            soundfile.write(
+                folder / "audio" / f"{name}.ogg", coloured, RATE_HZ, subtype="VORBIS",
+                compression_level=COMPRESSION_LEVEL,
+            )  # fmt: skip
+            segments = (Path(scratch) / f"{name}.lab").read_text()
+            if line.role == "demo":
+                (folder / "labels" / f"{name}.lab").write_text(segments)
             duration_s = len(coloured) / RATE_HZ
-            (folder / "labels" / f"{name}.lab").write_text((Path(scratch) / f"{name}.lab").read_text())
-            (folder / "words" / f"{name}.lab").write_text(
-                _word_labels((Path(scratch) / f"{name}.words").read_text(), duration_s)
+            labels[name] = SentenceLabels(
+                _phones(segments, duration_s), _words((Path(scratch) / f"{name}.words").read_text(), duration_s)
             )
+    write_labels(folder / "labels.csv", labels)
+
+
+def varied(voice: Voice, sentence: str) -> Voice:
+    """Return ``voice`` as it sounds in this sentence."""
+    chance = Chance(f"voice {sentence}")
+
+    def around(width: float) -> float:
+        return chance.between(-width, width)
+
+    return replace(
+        voice,
+        rate=voice.rate * (1 + around(RATE_VARIATION)),
+        pitch_semitones=voice.pitch_semitones + around(PITCH_VARIATION_SEMITONES),
+        pitch_range=voice.pitch_range * (1 + around(RANGE_VARIATION)),
+        loudness_db=voice.loudness_db + around(LOUDNESS_VARIATION_DB),
+    )
 
 
 def colour(samples: np.ndarray, rate_hz: int, voice: Voice) -> np.ndarray:
@@ -118,7 +148,7 @@ def colour(samples: np.ndarray, rate_hz: int, voice: Voice) -> np.ndarray:
     return np.tanh(spoken / 0.98) * 0.98
 
 
-def _run_festival(rows: list[dict[str, str]], voice_of: dict[str, Voice], folder: Path) -> None:
+def _run_festival(lines: list[Line], voice_of: dict[str, Voice], folder: Path) -> None:
     script = [
         "(voice_cmu_us_slt_arctic_hts)",
         "(define (speak name text rate)",
@@ -133,14 +163,12 @@ def _run_festival(rows: list[dict[str, str]], voice_of: dict[str, Voice], folder
         "            (utt.relation.items utt 'Word))",
         "    (fclose words)))",
     ]
-    for row in rows:
-        vary = Chance(f"rate {row['sentence']}").between(-RATE_VARIATION, RATE_VARIATION)
-        rate = voice_of[row["emotion"]].rate * (1 + vary)
-        script.append(f'(speak "{folder / row["sentence"]}" "{row["text"]}" {rate:.4f})')
+    for line in lines:
+        script.append(f'(speak "{folder / line.sentence}" "{line.text}" {voice_of[line.sentence].rate:.4f})')
     path = folder / "speak.scm"
     path.write_text("\n".join(script) + "\n", encoding="utf-8")
     done = subprocess.run(["festival", "-b", str(path)], capture_output=True, text=True)
-    missing = [row["sentence"] for row in rows if not (folder / f"{row['sentence']}.wav").exists()]
+    missing = [line.sentence for line in lines if not (folder / f"{line.sentence}.wav").exists()]
     if missing:
         reason = (done.stderr or done.stdout).strip().splitlines()
         raise UserFacingError(
@@ -149,18 +177,28 @@ def _run_festival(rows: list[dict[str, str]], voice_of: dict[str, Voice], folder
         )
 
 
-def _word_labels(lines: str, duration_s: float) -> str:
-    """Lay words (lines ``word start end``) over the whole sentence in xwaves form."""
-    labels, now_s = ["#"], 0.0
+def _phones(segments: str, duration_s: float) -> list[tuple[str, float]]:
+    """Read Festival's segments (xwaves); the last one, silence, ends with the sound."""
+    rows = [line.split() for line in segments.partition("#\n")[2].splitlines()]
+    ends = [(phone, float(end)) for end, _, phone in rows]
+    return [*ends[:-1], (ends[-1][0], duration_s)]
+
+
+def _words(lines: str, duration_s: float) -> list[tuple[str, float]]:
+    """Lay words (lines ``word start end``) over the whole sentence, silence as ``pau``; ``'s`` joins its word."""
+    labels: list[tuple[str, float]] = []
+    now_s = 0.0
     for line in lines.splitlines():
-        word, start_s, end_s = line.split()
-        if float(start_s) - now_s > 1e-3:
-            labels.append(f"\t{float(start_s):.4f} 100\tpau")
-        labels.append(f"\t{float(end_s):.4f} 100\t{word.lower()}")
-        now_s = float(end_s)
+        word, start, end = line.split()
+        if word.startswith("'"):
+            word = labels.pop()[0] + word
+        elif float(start) - now_s > 1e-3:
+            labels.append((PAU, float(start)))
+        labels.append((word.lower(), float(end)))
+        now_s = float(end)
     if duration_s - now_s > 1e-3:
-        labels.append(f"\t{duration_s:.4f} 100\tpau")
-    return "\n".join(labels) + "\n"
+        labels.append((PAU, duration_s))
+    return labels
 
 
 if __name__ == "__main__":

@@ -89,16 +89,16 @@ def test_lips_move_as_fast_as_lips_do(spoken):
     for emotion in EMOTIONS:
         peaks = [_mouth(activations)[2].max() for _, of, _, activations in spoken if of == emotion]
         assert 100 < np.median(peaks) < 280, emotion
-        assert max(peaks) < 400, emotion
+        assert max(peaks) < 450, emotion
 
 
 def test_motion_has_no_jitter(spoken):
-    """Above 30 Hz, where no articulator lives, there is less than half a percent of the lip's movement."""
+    """Above 30 Hz, where no articulator lives, there is less than one percent of the lip's movement."""
     for name, _, _, activations in spoken:
         gap, _, _ = _mouth(activations)
         power = np.abs(np.fft.rfft(np.diff(gap) * np.hanning(len(gap) - 1))) ** 2
         rate_hz = np.fft.rfftfreq(len(gap) - 1, 1 / RATE_HZ)
-        assert power[rate_hz > 30].sum() < 0.005 * power.sum(), name
+        assert power[rate_hz > 30].sum() < 0.01 * power.sum(), name
 
 
 def test_a_shorter_vowel_opens_less():
