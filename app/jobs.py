@@ -86,6 +86,7 @@ class JobRunner(QObject):
         self._voice.ended.connect(self._on_ended, Qt.ConnectionType.QueuedConnection)
         self._current: dict[str, _Job] = {}
         self._alive: set[_Job] = set()
+        self._closed = False
 
     def start(
         self,
@@ -103,6 +104,8 @@ class JobRunner(QObject):
         failed : takes a `UserFacingError` instead of the message bar
         discarded : takes a late answer that nobody wants any more, to free what it holds
         """
+        if self._closed:
+            return
         self.cancel(kind)
         job = _Job(kind, title, request, work, self._voice)
         job.applied, job.failed, job.discarded = applied, failed, discarded
@@ -128,7 +131,8 @@ class JobRunner(QObject):
         return not self._current
 
     def shut_down(self) -> None:
-        """Cancel everything and wait for the workers."""
+        """Cancel everything and wait for the workers; nothing starts any more."""
+        self._closed = True
         for kind in list(self._current):
             self.cancel(kind)
         self._pool.waitForDone()

@@ -135,6 +135,7 @@ LANE_WORDS = "words"
 LANE_PHONEMES = "phonemes"
 LANE_EMOTION = "emotion"
 SILENCE = "silence"
+UTTERANCE = "{phone}  {milliseconds:.0f} ms"
 
 # Status bar
 CANCEL_TIP = "Cancel"

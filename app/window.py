@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import QByteArray, Qt
+from PySide6.QtCore import QByteArray, QEvent, Qt
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QApplication, QFileDialog, QMainWindow, QMessageBox, QSplitter, QVBoxLayout, QWidget
 
@@ -56,6 +56,7 @@ class MainWindow(QMainWindow):
         self._make_menus()
         self._join()
         self._restore_layout()
+        self.timeline.setFocus()  # so that Space plays from the start, and is not typed into the transcript
 
     # Making
 
@@ -88,9 +89,10 @@ class MainWindow(QMainWindow):
         self.setCentralWidget(centre)
 
     def _default_layout(self) -> None:
-        self.resize(*_SIZE)
+        room = self.screen().availableSize()
+        width, height = min(_SIZE[0], room.width()), min(_SIZE[1], room.height())
+        self.resize(width, height)
         upper, lower, panes, body, whole = self._splitters
-        width, height = _SIZE
         for row in (upper, lower):
             row.setSizes([(width - WIDTH_PX) // 2, (width - WIDTH_PX) // 2])
         panes.setSizes([height * 9 // 20, height * 7 // 20])
@@ -305,6 +307,13 @@ class MainWindow(QMainWindow):
         self._settings.sync()
 
     # Qt
+
+    def event(self, event) -> bool:
+        """Show the hint for what is under the pointer in our own status line."""
+        if event.type() == QEvent.Type.StatusTip:
+            self.status.hint(event.tip())
+            return True
+        return super().event(event)
 
     def closeEvent(self, event) -> None:
         """Remember the layout and stop everything."""

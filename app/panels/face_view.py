@@ -31,7 +31,7 @@ class FaceView(QOpenGLWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
-        self.setToolTip(texts.ORBIT_TIP)
+        self.setStatusTip(texts.ORBIT_TIP)
         self._renderer: FaceRenderer | None = None
         self._ctx = None
         self._markers: MarkerSet | None = None

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import pyqtgraph as pg
 from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import QComboBox, QLabel, QSizePolicy
 
 from app import texts
 from app.authoring import Authoring
-from app.panels.map_items import MapBox, MapMark, MotionFrameDots, NodeTrajectory, SplatImage
+from app.panels.map_items import MapBox, MapCanvas, MapMark, MotionFrameDots, NodeTrajectory, SplatImage
 from app.panels.map_pick import MapPick, trajectory
 from app.panels.pane import Pane
 from app.theme import colour, theme
@@ -49,13 +49,11 @@ class IsomapPane(Pane):
     previewed = Signal(object)
 
     def __init__(self, authoring: Authoring) -> None:
-        self.canvas = pg.GraphicsView(background=theme().canvas)
+        self.box = MapBox()
+        self.canvas = MapCanvas(self.box)
         super().__init__(texts.ISOMAP, self.canvas, texts.ISOMAP_EMPTY)
         self._authoring = authoring
-        self.canvas.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.canvas.setToolTip(texts.MAP_TIP)
-        self.box = MapBox()
-        self.canvas.setCentralItem(self.box)
+        self.canvas.setStatusTip(texts.MAP_TIP)
         self._splats, self._dots = SplatImage(), MotionFrameDots()
         self._splats.setOpacity(_SPLAT_OPACITY)
         self._used_way = NodeTrajectory(theme().accent, 2.0)
@@ -66,6 +64,11 @@ class IsomapPane(Pane):
             self.box.addItem(item, ignoreBounds=item is not self._dots)
         self.kept: MapPick | None = None
         self._pointed: MapPick | None = None
+
+        for key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            pin = QShortcut(QKeySequence(key), self.canvas)
+            pin.setContext(Qt.ShortcutContext.WidgetShortcut)
+            pin.activated.connect(self.pin_kept)
 
         self.phone = QComboBox(toolTip=texts.PHONE_TIP)
         self.phone.setProperty("role", "small")
@@ -81,7 +84,7 @@ class IsomapPane(Pane):
 
         self.box.pointed.connect(self.on_pointed)
         self.box.clicked.connect(self.on_clicked)
-        self.box.double_clicked.connect(self.on_double_clicked)
+        self.canvas.double_clicked.connect(self.on_double_clicked)
         self._settle = QTimer(self, singleShot=True, interval=_SETTLED_MS)
         self._settle.timeout.connect(self._renew_splats)
         self.box.sigRangeChanged.connect(lambda *_: self._settle.start())

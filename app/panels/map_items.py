@@ -19,12 +19,11 @@ _NO_POINTS = np.zeros((0, 2))
 class MapBox(pg.ViewBox):
     """The plane of the map: wheel zooms, drag moves, and it says where the pointer is.
 
-    pointed(point), clicked(point), double_clicked(point) : map units
+    pointed(point), clicked(point) : map units; ``point`` is None when the pointer leaves
     """
 
     pointed = Signal(object)
     clicked = Signal(object)
-    double_clicked = Signal(object)
 
     def __init__(self) -> None:
         super().__init__(lockAspect=True, enableMenu=False)
@@ -37,8 +36,28 @@ class MapBox(pg.ViewBox):
         """Say what was clicked."""
         if event.button() == Qt.MouseButton.LeftButton:
             event.accept()
-            said = self.double_clicked if event.double() else self.clicked
-            said.emit(_array(self.mapToView(event.pos())))
+            self.clicked.emit(_array(self.mapToView(event.pos())))
+
+
+class MapCanvas(pg.GraphicsView):
+    """The widget around the plane.
+
+    double_clicked(point) : map units; taken here because the scene loses the second click when it follows the first
+    """
+
+    double_clicked = Signal(object)
+
+    def __init__(self, box: MapBox) -> None:
+        super().__init__(background=theme().canvas)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self._box = box
+        self.setCentralItem(box)
+
+    def mouseDoubleClickEvent(self, event) -> None:
+        """Say what was double-clicked."""
+        if event.button() == Qt.MouseButton.LeftButton:
+            event.accept()
+            self.double_clicked.emit(_array(self._box.mapSceneToView(self.mapToScene(event.position().toPoint()))))
 
 
 def _array(point: QPointF) -> np.ndarray:

@@ -25,8 +25,9 @@ class StatusLine(QWidget):
         row = QHBoxLayout(self)
         row.setContentsMargins(STEP + 4, 0, STEP, 0)
         row.setSpacing(2 * STEP)
-        self._note = ElidedLabel()
-        row.addWidget(self._note, 1)
+        self._note = ""
+        self._shown = ElidedLabel()
+        row.addWidget(self._shown, 1)
         self._job = label()
         self._bar = QProgressBar(maximum=_FULL, textVisible=False)
         self._bar.setFixedWidth(_BAR_PX)
@@ -42,12 +43,17 @@ class StatusLine(QWidget):
 
     def say(self, sentence: str) -> None:
         """Show a note."""
-        self._note.setText(sentence)
+        self._note = sentence
+        self._shown.setText(sentence)
+
+    def hint(self, text: str) -> None:
+        """Show what can be done where the pointer is; nothing brings the note back."""
+        self._shown.setText(text or self._note)
 
     @property
     def note(self) -> str:
         """The last note."""
-        return self._note.whole_text
+        return self._note
 
     @property
     def job(self) -> str:

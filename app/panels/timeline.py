@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QPainter, QPixmap
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
 
 from app import texts
 from app.authoring import Authoring
@@ -44,7 +44,7 @@ class Timeline(QWidget):
         self._pressed_at: float | None = None
         self._dragging = False
         self._lanes_picture: QPixmap | None = None  # painted once; only the playhead moves sixty times a second
-        self.setToolTip(texts.TIMELINE_TIP)
+        self.setStatusTip(texts.TIMELINE_TIP)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.setMinimumHeight(_RULER_PX + 32 + 2 * _BOX_PX + _EMOTION_PX)
@@ -234,16 +234,16 @@ class Timeline(QWidget):
         return super().event(event)
 
     def _describe(self, event) -> None:
-        from PySide6.QtWidgets import QToolTip
-
         speech = self._authoring.document.speech
         slot = None if speech is None else self._slot_at(event.pos().x())
-        text = texts.TIMELINE_TIP
-        if slot is not None and event.pos().x() >= _NAMES_PX:
-            utterance = speech.transcript.phonemes[slot]
-            phone = texts.SILENCE if utterance.phone == PAU else f"/{utterance.phone}/"
-            said = f"{phone}  {1000 * (utterance.end_s - utterance.start_s):.0f} ms"
-            text = f"{said}\n{texts.TIMELINE_TIP}"
+        if slot is None or event.pos().x() < _NAMES_PX:
+            QToolTip.hideText()
+            return
+        utterance = speech.transcript.phonemes[slot]
+        phone = texts.SILENCE if utterance.phone == PAU else f"/{utterance.phone}/"
+        text = texts.UTTERANCE.format(phone=phone, milliseconds=1000 * (utterance.end_s - utterance.start_s))
+        if slot in self._authoring.document.pins:
+            text += "\n" + texts.PINNED.format(node=self._authoring.document.pins[slot])
         QToolTip.showText(event.globalPos(), text, self)
 
 
