@@ -11,6 +11,7 @@ from core.progress import SILENT, Progress
 from core.search.compute import SearchKernels
 from core.search.constraints import SearchRequest, blocked_nodes, check_feasible
 from core.search.terms import emotion_mismatch_penalties, observation_costs
+from core.search.transitions import TransitionCosts
 from core.search.weights import SearchWeights
 
 
@@ -21,42 +22,56 @@ class MotionPath:
     nodes : int, shape (n_slots,), rows of the motion nodes
     observation, emotion : float64, shape (n_slots,), the slot's own costs
     transition : float64, shape (n_slots,), the cost of arriving in the slot; 0 in the first
+    lower_bound : no path that satisfies the request costs less than this
     """
 
     nodes: np.ndarray
     observation: np.ndarray
     transition: np.ndarray
     emotion: np.ndarray
+    lower_bound: float
 
     @property
     def cost(self) -> float:
         """COST of equation 4."""
         return float(self.observation.sum() + self.transition.sum() + self.emotion.sum())
 
+    @property
+    def gap(self) -> float:
+        """How far the cost can be from the least possible, over the cost; 0 when it is proved optimal."""
+        return 0.0 if self.is_optimal else (self.cost - self.lower_bound) / self.cost
+
+    @property
+    def is_optimal(self) -> bool:
+        """Whether the bound proves that no path is better (up to the rounding of float64 sums)."""
+        return self.lower_bound >= self.cost * (1.0 - 1e-12)
+
 
 def find_path(
     request: SearchRequest,
-    nodes: NodeTable,
-    transition: np.ndarray,
-    weights: SearchWeights,
+    costs: TransitionCosts,
     kernels: SearchKernels,
     progress: Progress = SILENT,
 ) -> MotionPath:
-    """Find the path of least COST (equation 4) that satisfies ``request``.
+    """Find the path of least COST (equation 4) that satisfies ``request``, looking at every node in every slot.
 
-    transition : from `core.search.compute.transition_matrix`; ``kernels`` were prepared with it
+    kernels : prepared with ``costs.matrix``
     Equal costs go to the lowest row. Raises `UserFacingError` when the request cannot be satisfied.
     """
+    nodes = costs.terms.nodes
     check_feasible(request, nodes)
-    n_nodes = len(nodes)
-    fronts = np.empty((request.n_slots, n_nodes))
+    fronts = np.empty((request.n_slots, len(nodes)))
     for p in range(request.n_slots):
-        fronts[p] = slot_costs(request, p, nodes, weights)
+        fronts[p] = slot_costs(request, p, nodes, costs.weights)
         if p:
             fronts[p] += kernels.min_plus(fronts[p - 1])
         progress.step((p + 1) / request.n_slots, "searching motion nodes")
-    path = _trace_back(fronts, transition)
-    return priced(path, request, nodes, transition, weights)
+    path = np.empty(request.n_slots, int)
+    path[-1] = fronts[-1].argmin()
+    for p in range(request.n_slots - 2, -1, -1):
+        # the arguments of the minima are found only here, where they are needed
+        path[p] = (fronts[p] + costs.matrix[path[p + 1]]).argmin()
+    return priced(path, request, costs)
 
 
 def slot_costs(request: SearchRequest, slot: int, nodes: NodeTable, weights: SearchWeights) -> np.ndarray:
@@ -67,22 +82,17 @@ def slot_costs(request: SearchRequest, slot: int, nodes: NodeTable, weights: Sea
     return cost
 
 
-def _trace_back(fronts: np.ndarray, transition: np.ndarray) -> np.ndarray:
-    """Walk back along the best path; the arguments of the minima are found only here, where they are needed."""
-    path = np.empty(len(fronts), int)
-    path[-1] = fronts[-1].argmin()
-    for p in range(len(fronts) - 2, -1, -1):
-        path[p] = (fronts[p] + transition[path[p + 1]]).argmin()
-    return path
-
-
 def priced(
-    path: np.ndarray, request: SearchRequest, nodes: NodeTable, transition: np.ndarray, weights: SearchWeights
+    path: np.ndarray, request: SearchRequest, costs: TransitionCosts, lower_bound: float | None = None
 ) -> MotionPath:
-    """Break the cost of ``path`` down by slot and term."""
+    """Break the cost of ``path`` down by slot and term. Without a ``lower_bound`` the path is known to be optimal."""
+    nodes, weights = costs.terms.nodes, costs.weights
     slots = np.arange(request.n_slots)
     observation = np.array([observation_costs(request.phonemes[p : p + 1], nodes, weights)[0, path[p]] for p in slots])
     emotion = weights.alpha6 * weights.pnt * (1.0 - request.emotions[slots, nodes.emotion[path]])
     arriving = np.zeros(request.n_slots)
-    arriving[1:] = transition[path[1:], path[:-1]]
-    return MotionPath(path, observation, arriving, emotion)
+    for p in slots[1:]:
+        arriving[p] = costs.block(path[p : p + 1], path[p - 1 : p])[0, 0]
+    answer = MotionPath(path, observation, arriving, emotion, 0.0)
+    bound = answer.cost if lower_bound is None else min(lower_bound, answer.cost)
+    return MotionPath(path, observation, arriving, emotion, bound)

@@ -12,11 +12,6 @@ from typing import Protocol
 
 import numpy as np
 
-from core.motion.node import NIL, NodeTable
-from core.progress import SILENT, Progress
-from core.search.terms import TransitionTerms
-from core.search.weights import SearchWeights
-
 
 @dataclass(frozen=True)
 class DeviceReport:
@@ -29,15 +24,22 @@ class DeviceReport:
 
 
 class SearchKernels(Protocol):
-    """What a compute backend offers to the search."""
+    """What a compute backend offers to the search. The matrix has the node arrived at as its row."""
 
     report: DeviceReport
 
     def prepare(self, transition: np.ndarray) -> None:
-        """Take the matrix of `transition_matrix`, float32, shape (n_nodes, n_nodes), row = node arrived at."""
+        """Take the transition matrix, float32, shape (n_nodes, n_nodes)."""
 
     def min_plus(self, front: np.ndarray) -> np.ndarray:
-        """Return ``min_n(front[n] + transition[m, n])`` for every m; float64, shape (n_nodes,)."""
+        """One step forward: ``min_n(front[n] + transition[m, n])`` for every m; float64, shape (n_nodes,)."""
+
+    def min_plus_both(self, front: np.ndarray, behind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """One step forward and one backward in a single pass over the matrix.
+
+        returns : ``min_n(front[n] + transition[m, n])`` for every m, and ``min_m(behind[m] + transition[m, n])`` for
+            every n; float64, shape (n_nodes,) each
+        """
 
     def release(self) -> None:
         """Free the device's memory."""
@@ -58,39 +60,30 @@ class NumpyKernels:
     def min_plus(self, front: np.ndarray) -> np.ndarray:
         """See `SearchKernels.min_plus`."""
         arrived = np.empty(len(self._transition))
-        rows = max(1, (1 << 20) // (8 * len(front)))
-        sums = np.empty((rows, len(front)))
-        for first in range(0, len(arrived), rows):
-            block = self._transition[first : first + rows]
-            np.add(block, front, out=sums[: len(block)])
-            arrived[first : first + rows] = sums[: len(block)].min(axis=1)
+        for rows, sums in self._stripes():
+            np.add(self._transition[rows], front, out=sums)
+            arrived[rows] = sums.min(axis=1)
         return arrived
+
+    def min_plus_both(self, front: np.ndarray, behind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """See `SearchKernels.min_plus_both`."""
+        arrived = np.empty(len(self._transition))
+        left = np.full(len(self._transition), np.inf)
+        for rows, sums in self._stripes():
+            np.add(self._transition[rows], front, out=sums)
+            arrived[rows] = sums.min(axis=1)
+            np.add(self._transition[rows], behind[rows, None], out=sums)
+            np.minimum(left, sums.min(axis=0), out=left)
+        return arrived, left
+
+    def _stripes(self):
+        n_nodes = len(self._transition)
+        n_rows = max(1, (1 << 20) // (8 * n_nodes))
+        buffer = np.empty((n_rows, n_nodes))
+        for first in range(0, n_nodes, n_rows):
+            rows = slice(first, min(first + n_rows, n_nodes))
+            yield rows, buffer[: rows.stop - first]
 
     def release(self) -> None:
         """See `SearchKernels.release`."""
         self._transition = np.zeros((0, 0), np.float32)
-
-
-def transition_matrix(terms: TransitionTerms, weights: SearchWeights, progress: Progress = SILENT) -> np.ndarray:
-    """TC of table 1 for all pairs: ``matrix[m, n]`` is the cost of following motion node n by motion node m.
-
-    Rule 1 (n is m's captured predecessor) is free; rules 2 and 3 price the blend and the gap, with PNT added when the
-    visemes differ; rule 4 (m has no predecessor) is ``α1 · PNT``.
-
-    returns : float32, shape (n_nodes, n_nodes)
-    """
-    nodes: NodeTable = terms.nodes
-    n_nodes = len(nodes)
-    matrix = np.full((n_nodes, n_nodes), weights.alpha1 * weights.pnt, np.float32)
-    done = 0
-    with_pre = np.flatnonzero(nodes.pre != NIL)
-    for block in terms.blocks():
-        cost = weights.alpha3 * block.position_gap
-        cost += block.velocity_gap
-        cost += weights.alpha2 * block.smoothing
-        cost += weights.pnt * block.viseme_differs
-        matrix[block.targets] = cost
-        done += len(block.targets)
-        progress.step(done / len(with_pre), "pricing transitions")
-    matrix[with_pre, nodes.pre[with_pre]] = 0.0
-    return matrix

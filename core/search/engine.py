@@ -11,9 +11,10 @@ import numpy as np
 from core.motion.database import MotionDatabase
 from core.progress import SILENT, Progress
 from core.search.best_path import MotionPath, find_path
-from core.search.compute import SearchKernels, transition_matrix
+from core.search.compute import SearchKernels
 from core.search.constraints import SearchRequest
 from core.search.terms import TransitionTerms
+from core.search.transitions import TransitionCosts
 from core.search.weights import SearchWeights
 from core.speech.emotion import EmotionModifier, emotion_weights
 from core.speech.phoneme import PHONEME_INDEX
@@ -52,10 +53,7 @@ class SearchAnswer:
 
 
 class SearchEngine:
-    """Constrained search over a motion database (Deng and Neumann 2008, sections 6.2 and 7.2).
-
-    The transition matrix is made at first use and kept: 4 n_nodes² bytes.
-    """
+    """Constrained search over a motion database (Deng and Neumann 2008, sections 6.2 and 7.2)."""
 
     name = "search"
 
@@ -63,16 +61,16 @@ class SearchEngine:
         self.database = database
         self.kernels = kernels
         self.weights = weights or database.weights
-        self._transition: np.ndarray | None = None
+        terms = TransitionTerms(database.frames, database.nodes, database.rate_hz)
+        self.costs = TransitionCosts(terms, self.weights)
+        self._is_prepared = False
 
-    def prepare(self, progress: Progress = SILENT) -> np.ndarray:
-        """Price all transitions, once, and hand them to the compute backend; returns the matrix."""
-        if self._transition is None:
-            terms = TransitionTerms(self.database.frames, self.database.nodes, self.database.rate_hz)
-            transition = transition_matrix(terms, self.weights, progress)
-            self.kernels.prepare(transition)
-            self._transition = transition
-        return self._transition
+    def prepare(self, progress: Progress = SILENT) -> None:
+        """Price all transitions, once, and hand them to the compute backend."""
+        if not self._is_prepared:
+            self.costs.prepare(progress)
+            self.kernels.prepare(self.costs.matrix)
+            self._is_prepared = True
 
     def request(self, speech: SpeechInput) -> SearchRequest:
         """Translate names to rows; raises `UserFacingError` for a node that the database does not have."""
@@ -88,9 +86,9 @@ class SearchEngine:
     def synthesise(self, speech: SpeechInput, progress: Progress = SILENT) -> SearchAnswer:
         """Find the best path and turn it into marker motion at the database's rate."""
         request = self.request(speech)
-        transition = self.prepare(progress.part(0.0, 0.5))
+        self.prepare(progress.part(0.0, 0.5))
         began = time.perf_counter()
-        path = find_path(request, self.database.nodes, transition, self.weights, self.kernels, progress.part(0.5, 0.9))
+        path = find_path(request, self.costs, self.kernels, progress.part(0.5, 0.9))
         searched = time.perf_counter()
         slots = SlotFrames.of(
             [u.start_s for u in speech.transcript.phonemes],

@@ -20,10 +20,10 @@ from core.speech.phoneme import PAU, PHONEME_INDEX, VISEME_OF_PHONEME
 
 @dataclass(frozen=True)
 class TransitionBlock:
-    """Weight-independent transition terms from all nodes n into the nodes m of one block.
+    """Weight-independent transition terms from some nodes n into the nodes m of one block.
 
     targets : int, shape (n_block,), the rows m
-    position_gap, velocity_gap, smoothing : float64, shape (n_block, n_nodes); mm², (mm/s)², mm²/s³
+    position_gap, velocity_gap, smoothing : float64, shape (n_block, n_sources); mm², (mm/s)², mm²/s³
     viseme_differs : bool, same shape; viseme(n) is not viseme(pre(m))
     """
 
@@ -65,38 +65,64 @@ class TransitionTerms:
         span_s = np.maximum(after - before, 1) / self.rate_hz
         return (frames[after] - frames[before]) / span_s[:, None]
 
-    def blocks(self, targets: np.ndarray | None = None, most_bytes: int = 64 << 20) -> Iterator[TransitionBlock]:
-        """Yield the terms into ``targets`` (default all nodes with a predecessor), grouped by predecessor length.
+    def blocks(
+        self, targets: np.ndarray | None = None, sources: np.ndarray | None = None, most_bytes: int = 64 << 20
+    ) -> Iterator[TransitionBlock]:
+        """Yield the terms from ``sources`` (default all) into ``targets`` (default all with a predecessor).
 
-        A block's largest matrix stays near ``most_bytes``.
+        Targets are grouped by the length of their predecessor; a block's largest matrix stays near ``most_bytes``.
         """
         pre = self.nodes.pre
-        if targets is None:
-            targets = np.arange(len(self.nodes))
+        everyone = np.arange(len(self.nodes))
+        targets = everyone if targets is None else targets
+        n = everyone if sources is None else sources
         targets = targets[pre[targets] != NIL]
         lengths = np.maximum(self.nodes.n_frames[pre[targets]], 3)
-        most_rows = max(1, most_bytes // (8 * len(self.nodes)))
+        most_rows = max(1, most_bytes // (8 * len(n)))
         for length in np.unique(lengths):
             of_length = targets[lengths == length]
-            fading_out = self._curvature_of_warped(np.arange(len(self.nodes)), int(length), fading_out=True)
-            out_energy = (fading_out**2).sum(axis=1)
+            fading_out = self._curvature_of_warped(n, int(length), fading_out=True)
             for first in range(0, len(of_length), most_rows):
                 m = of_length[first : first + most_rows]
                 fading_in = self._curvature_of_warped(pre[m], int(length), fading_out=False)
-                smoothing = (fading_in**2).sum(axis=1)[:, None] + out_energy[None] + 2.0 * fading_in @ fading_out.T
                 yield TransitionBlock(
                     m,
-                    _squared_distances(self._first_pose[m], self._last_pose),
-                    _squared_distances(self._first_velocity[m], self._last_velocity),
-                    smoothing.clip(0.0),
-                    self._viseme[pre[m]][:, None] != self._viseme[None],
+                    _squared_distances(self._first_pose[m], self._last_pose[n]),
+                    _squared_distances(self._first_velocity[m], self._last_velocity[n]),
+                    _squared_distances(fading_in, -fading_out),
+                    self._viseme[pre[m]][:, None] != self._viseme[n][None],
                 )
+
+    def costs(self, targets: np.ndarray, sources: np.ndarray, weights: SearchWeights) -> np.ndarray:
+        """TC of table 1 for a block of pairs, computed on the spot; float32, shape (n_targets, n_sources)."""
+        pre = self.nodes.pre[targets]
+        block = np.full((len(targets), len(sources)), weights.alpha1 * weights.pnt, np.float32)
+        length_of = np.where(pre == NIL, 0, np.maximum(self.nodes.n_frames[pre], 3))
+        leaving = [self._last_pose[sources] * np.sqrt(weights.alpha3), self._last_velocity[sources]]
+        for length in np.unique(length_of[pre != NIL]):
+            where = np.flatnonzero(length_of == length)
+            m = targets[where]
+            out = self._curvature_of_warped(sources, int(length), fading_out=True) * np.sqrt(weights.alpha2)
+            into = self._curvature_of_warped(pre[where], int(length), fading_out=False) * -np.sqrt(weights.alpha2)
+            arriving = [self._first_pose[m] * np.sqrt(weights.alpha3), self._first_velocity[m], into]
+            cost = _squared_distances(np.concatenate(arriving, axis=1), np.concatenate([*leaving, out], axis=1))
+            cost += weights.pnt * (self._viseme[pre[where]][:, None] != self._viseme[sources][None])
+            block[where] = cost
+        block[pre[:, None] == sources[None]] = 0.0
+        return block
+
+    def of_pair(self, source: int, target: int) -> tuple[float, float, float, bool]:
+        """Return PGap, VGap, DSC and whether the visemes differ, of one pair; ``target`` has a predecessor."""
+        (block,) = self.blocks(np.array([target]), sources=np.array([source]))
+        return (float(block.position_gap[0, 0]), float(block.velocity_gap[0, 0]), float(block.smoothing[0, 0]),
+                bool(block.viseme_differs[0, 0]))  # fmt: skip
 
     def _curvature_of_warped(self, rows: np.ndarray, length: int, fading_out: bool) -> np.ndarray:
         """Second derivative of nodes warped to ``length`` frames and faded, as one vector a node.
 
         DSC (equation 6) of nodes a and b is the squared length of the sum of a's vector, fading out, and b's, fading
-        in: the blend, the warp and the derivative are linear. t in seconds; the integral is a sum over frames.
+        in, since the blend, the warp and the derivative are linear: so it is the squared distance of one to minus the
+        other. t in seconds; the integral is a sum over frames.
 
         returns : float64, shape (n_rows, (length - 2) * n_dims)
         """

@@ -20,15 +20,18 @@ class OpenClKernels:
         self._cl = cl
         device, self._context, program = _first_that_builds(cl, shader_source("opencl/min_plus.cl"))
         self._queue = cl.CommandQueue(self._context)
-        self._kernel = cl.Kernel(program, "min_plus")
+        self._forward = cl.Kernel(program, "min_plus")
+        self._both = cl.Kernel(program, "min_plus_both")
+        self._gather = cl.Kernel(program, "least_of_columns")
         software = bool(device.type & cl.device_type.CPU)
         self.report = DeviceReport("opencl", device.name.strip(), device.platform.name.strip(), software)
-        self._distance_map = self._front = self._arrived = None
+        # two groups a core keep every core busy when one is slower; each owns a stripe of rows
+        self._n_groups = 2 * device.max_compute_units
+        self._buffers: dict[str, object] = {}
         self._n_nodes = self._stride = 0
 
     def prepare(self, transition: np.ndarray) -> None:
         """See `SearchKernels.prepare`; raises `UserFacingError` when the device has not enough memory."""
-        cl = self._cl
         self.release()
         self._n_nodes = len(transition)
         self._stride = -(-self._n_nodes // _LANES) * _LANES
@@ -40,33 +43,62 @@ class OpenClKernels:
                 f"{asked >> 20} MiB.",
                 "Use --backend numpy, or a smaller database.",
             )
-        padded = np.zeros((self._n_nodes, self._stride), np.float32)
-        padded[:, : self._n_nodes] = transition
-        flags = cl.mem_flags
-        self._distance_map = cl.Buffer(self._context, flags.READ_ONLY | flags.COPY_HOST_PTR, hostbuf=padded)
-        self._front = cl.Buffer(self._context, flags.READ_ONLY, self._stride * 8)
-        self._arrived = cl.Buffer(self._context, flags.WRITE_ONLY, self._n_nodes * 8)
+        if self._stride == self._n_nodes:
+            padded = transition
+        else:
+            padded = np.zeros((self._n_nodes, self._stride), np.float32)
+            padded[:, : self._n_nodes] = transition
+        cl, flags = self._cl, self._cl.mem_flags
+        row, column = self._n_nodes * 8, self._stride * 8
+        self._buffers = {
+            "DistanceMap": cl.Buffer(self._context, flags.READ_ONLY | flags.COPY_HOST_PTR, hostbuf=padded),
+            "PrevCostBufferMap": cl.Buffer(self._context, flags.READ_ONLY, column),
+            "NextCostBufferMap": cl.Buffer(self._context, flags.READ_ONLY, row),
+            "CostValueMap": cl.Buffer(self._context, flags.READ_WRITE, row),
+            "CostBuffMap": cl.Buffer(self._context, flags.READ_WRITE, self._n_groups * column),
+            "LeavingValueMap": cl.Buffer(self._context, flags.READ_WRITE, column),
+        }
 
     def min_plus(self, front: np.ndarray) -> np.ndarray:
         """See `SearchKernels.min_plus`."""
-        cl = self._cl
-        padded = np.full(self._stride, np.inf)
-        padded[: self._n_nodes] = front
-        arrived = np.empty(self._n_nodes)
-        cl.enqueue_copy(self._queue, self._front, padded)
-        self._kernel(
-            self._queue, (self._n_nodes,), None, self._distance_map, self._front, self._arrived,
+        self._write_front(front)
+        maps = self._buffers
+        self._forward(
+            self._queue, (self._n_nodes,), None, maps["DistanceMap"], maps["PrevCostBufferMap"], maps["CostValueMap"],
             np.uint32(self._n_nodes), np.uint32(self._stride),
         )  # fmt: skip
-        cl.enqueue_copy(self._queue, arrived, self._arrived)
-        return arrived
+        return self._read("CostValueMap")
+
+    def min_plus_both(self, front: np.ndarray, behind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """See `SearchKernels.min_plus_both`."""
+        self._write_front(front)
+        maps, n_nodes, stride = self._buffers, np.uint32(self._n_nodes), np.uint32(self._stride)
+        self._cl.enqueue_copy(self._queue, maps["NextCostBufferMap"], np.ascontiguousarray(behind, float))
+        self._both(
+            self._queue, (self._n_groups,), (1,), maps["DistanceMap"], maps["PrevCostBufferMap"],
+            maps["NextCostBufferMap"], maps["CostValueMap"], maps["CostBuffMap"], n_nodes, stride,
+        )  # fmt: skip
+        self._gather(
+            self._queue, (self._stride,), None, maps["CostBuffMap"], maps["LeavingValueMap"],
+            np.uint32(self._n_groups), stride,
+        )  # fmt: skip
+        return self._read("CostValueMap"), self._read("LeavingValueMap")
+
+    def _write_front(self, front: np.ndarray) -> None:
+        padded = np.full(self._stride, np.inf)
+        padded[: self._n_nodes] = front
+        self._cl.enqueue_copy(self._queue, self._buffers["PrevCostBufferMap"], padded)
+
+    def _read(self, name: str) -> np.ndarray:
+        values = np.empty(self._n_nodes)
+        self._cl.enqueue_copy(self._queue, values, self._buffers[name])
+        return values
 
     def release(self) -> None:
         """See `SearchKernels.release`."""
-        for buffer in (self._distance_map, self._front, self._arrived):
-            if buffer is not None:
-                buffer.release()
-        self._distance_map = self._front = self._arrived = None
+        for buffer in self._buffers.values():
+            buffer.release()
+        self._buffers = {}
 
 
 def _first_that_builds(cl, source: str):

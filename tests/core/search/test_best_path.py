@@ -8,18 +8,19 @@ import pytest
 from core.errors import UserFacingError
 from core.motion.node import NIL
 from core.search.best_path import find_path
-from core.search.compute import NumpyKernels, transition_matrix
+from core.search.compute import NumpyKernels
 from core.search.constraints import SearchRequest
 from core.search.terms import TransitionTerms, default_weights, emotion_mismatch_penalties, observation_costs
+from core.search.transitions import TransitionCosts
 from core.speech.phoneme import PHONEMES
 
 
 def prepared(frames, nodes):
     weights = default_weights(frames, nodes, 120.0)
-    matrix = transition_matrix(TransitionTerms(frames, nodes, 120.0), weights)
+    costs = TransitionCosts(TransitionTerms(frames, nodes, 120.0), weights)
     kernels = NumpyKernels()
-    kernels.prepare(matrix)
-    return weights, matrix, kernels
+    kernels.prepare(costs.matrix)
+    return costs, kernels
 
 
 def random_request(rng, nodes, n_slots, n_pins=0, n_removed=0):
@@ -53,42 +54,41 @@ def enumerated(request, nodes, matrix, weights):
 def test_equals_enumeration(random_motion, seed):
     rng = np.random.default_rng(seed)
     frames, nodes = random_motion(seed, n_sentences=2, phones_each=5)
-    weights, matrix, kernels = prepared(frames, nodes)
+    costs, kernels = prepared(frames, nodes)
     request = random_request(rng, nodes, n_slots=4, n_pins=seed % 3, n_removed=seed % 2)
-    answer = find_path(request, nodes, matrix, weights, kernels)
-    least, costs = enumerated(request, nodes, matrix, weights)
+    answer = find_path(request, costs, kernels)
+    least, costs = enumerated(request, nodes, costs.matrix, costs.weights)
     assert answer.cost == pytest.approx(least, rel=1e-12)
     assert costs[tuple(answer.nodes.tolist())] == pytest.approx(least, rel=1e-12)
 
 
 def test_a_captured_sentence_is_found_again_for_free(random_motion):
     frames, nodes = random_motion(7, phones="aa b k iy s")
-    weights, matrix, kernels = prepared(frames, nodes)
+    costs, kernels = prepared(frames, nodes)
     rows = np.flatnonzero(nodes.sentence == 2)
     emotions = np.zeros((len(rows), 4))
     emotions[:, nodes.emotion[rows[0]]] = 1.0
-    answer = find_path(SearchRequest(nodes.phoneme[rows], emotions), nodes, matrix, weights, kernels)
+    answer = find_path(SearchRequest(nodes.phoneme[rows], emotions), costs, kernels)
     assert answer.cost == 0.0
     assert answer.nodes.tolist() == rows.tolist()
 
 
 def test_pins_hold_everywhere_the_first_slot_included(random_motion):
     frames, nodes = random_motion(8)
-    weights, matrix, kernels = prepared(frames, nodes)
+    costs, kernels = prepared(frames, nodes)
     for slot in range(5):
         request = SearchRequest(np.zeros(5, int), np.eye(4)[[0] * 5], {slot: 3})
-        assert find_path(request, nodes, matrix, weights, kernels).nodes[slot] == 3
+        assert find_path(request, costs, kernels).nodes[slot] == 3
 
 
 def test_removed_nodes_are_never_used(random_motion):
     frames, nodes = random_motion(9)
-    weights, matrix, kernels = prepared(frames, nodes)
+    costs, kernels = prepared(frames, nodes)
     removed: set[int] = set()
     request = random_request(np.random.default_rng(9), nodes, 6)
     while len(removed) < len(nodes) - 1:
-        answer = find_path(
-            SearchRequest(request.phonemes, request.emotions, {}, frozenset(removed)), nodes, matrix, weights, kernels
-        )
+        now = SearchRequest(request.phonemes, request.emotions, {}, frozenset(removed))
+        answer = find_path(now, costs, kernels)
         assert not removed & set(answer.nodes.tolist())
         removed.add(int(answer.nodes[0]))
 
@@ -96,10 +96,10 @@ def test_removed_nodes_are_never_used(random_motion):
 def test_equal_costs_go_to_the_lowest_row(random_motion):
     frames, nodes = random_motion(10)
     frames[:] = 0.0
-    weights, matrix, kernels = prepared(frames, nodes)
+    costs, kernels = prepared(frames, nodes)
     silence = SearchRequest(np.full(3, PHONEMES.index("pau")), np.full((3, 4), 0.25))
-    answer = find_path(silence, nodes, matrix, weights, kernels)
-    local = 1.5 * weights.pnt * 3
+    answer = find_path(silence, costs, kernels)
+    local = 1.5 * costs.weights.pnt * 3
     assert answer.cost == pytest.approx(local)
     best = answer.nodes.tolist()
     for p in range(3):
@@ -107,13 +107,13 @@ def test_equal_costs_go_to_the_lowest_row(random_motion):
             other = [*best[:p], lower, *best[p + 1 :]]
             if other[p + 1 :] != best[p + 1 :]:
                 continue
-            suffix_same = sum(float(matrix[m, n]) for n, m in itertools.pairwise(other))
+            suffix_same = sum(float(costs.matrix[m, n]) for n, m in itertools.pairwise(other))
             assert suffix_same > 0 or p < 2
 
 
 def test_infeasible_requests_name_the_slot(random_motion):
     frames, nodes = random_motion(11)
-    weights, matrix, kernels = prepared(frames, nodes)
+    costs, kernels = prepared(frames, nodes)
     phonemes, emotions = np.zeros(3, int), np.eye(4)[[0] * 3]
     cases = [
         (SearchRequest(phonemes, emotions, {1: 4}, frozenset({4})), "Slot 1"),
@@ -123,7 +123,7 @@ def test_infeasible_requests_name_the_slot(random_motion):
     ]
     for request, words in cases:
         with pytest.raises(UserFacingError, match=words):
-            find_path(request, nodes, matrix, weights, kernels)
+            find_path(request, costs, kernels)
 
 
 def test_a_chain_needs_a_predecessor(random_motion):

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from core.motion.node import NIL
-from core.search.compute import transition_matrix
 from core.search.terms import (
     TransitionTerms,
     default_weights,
@@ -12,6 +11,7 @@ from core.search.terms import (
     observation_costs,
     warp_matrix,
 )
+from core.search.transitions import TransitionCosts
 from core.search.weights import SearchWeights
 from core.speech.phoneme import PHONEMES, viseme_of
 
@@ -64,7 +64,7 @@ def test_terms_equal_pairwise_computation(random_motion):
 def test_transition_rules_in_their_order(random_motion):
     frames, nodes = random_motion(2)
     weights = SearchWeights(pnt=10.0, alpha1=2.0, alpha2=1e-6, alpha3=3.0)
-    matrix = transition_matrix(TransitionTerms(frames, nodes, RATE), weights)
+    matrix = TransitionCosts(TransitionTerms(frames, nodes, RATE), weights).matrix
     for m in range(len(nodes)):
         for n in range(len(nodes)):
             if nodes.pre[m] == n:

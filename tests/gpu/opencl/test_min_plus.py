@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from core.search.best_path import find_path
-from core.search.compute import NumpyKernels, transition_matrix
+from core.search.compute import NumpyKernels
 from core.search.constraints import SearchRequest
 from core.search.terms import TransitionTerms, default_weights
+from core.search.transitions import TransitionCosts
 from gpu.opencl.min_plus import OpenClKernels
 
 
@@ -33,10 +34,10 @@ def test_one_step_equals_the_reference(opencl, n_nodes):
 def test_fifty_random_utterances_with_pins_and_emotions(opencl, random_motion):
     frames, nodes = random_motion(50, n_sentences=40, phones_each=12, phones="aa b k iy s m ow t pau")
     weights = default_weights(frames, nodes, 120.0)
-    matrix = transition_matrix(TransitionTerms(frames, nodes, 120.0), weights)
+    costs = TransitionCosts(TransitionTerms(frames, nodes, 120.0), weights)
     reference = NumpyKernels()
     for kernels in (reference, opencl):
-        kernels.prepare(matrix)
+        kernels.prepare(costs.matrix)
     rng = np.random.default_rng(50)
     for _ in range(50):
         n_slots = int(rng.integers(1, 40))
@@ -45,8 +46,8 @@ def test_fifty_random_utterances_with_pins_and_emotions(opencl, random_motion):
         request = SearchRequest(
             rng.integers(0, 44, n_slots), rng.dirichlet(np.ones(4), n_slots), pins, frozenset(rows[5:40].tolist())
         )
-        ours = find_path(request, nodes, matrix, weights, opencl)
-        theirs = find_path(request, nodes, matrix, weights, reference)
+        ours = find_path(request, costs, opencl)
+        theirs = find_path(request, costs, reference)
         assert ours.nodes.tolist() == theirs.nodes.tolist()
         assert ours.cost == theirs.cost
         assert all(ours.nodes[slot] == row for slot, row in pins.items())
