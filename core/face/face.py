@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from core.face.look import Look
+
 PARTS = (
     "skin", "eye_left", "eye_right", "upper_teeth", "lower_teeth", "tongue",
     "lashes_upper_left", "lashes_upper_right", "lashes_lower_left", "lashes_lower_right", "mouth_socket", "other",
@@ -25,6 +27,9 @@ class Face:
     landmarks : anatomical name (see `core.motion.marker_set.LANDMARKS`) to vertex
     units : blendshape unit name (ARKit) to float32 displacements, shape (n_vertices, 3), millimetres
     credit : source and licence, for About
+    look : colours and marks of age
+    masks : what is painted where, name to float32, shape (n_vertices,): ``lips`` 0..1, ``hair`` the distance from the
+        hairline in mm, positive under the hair. None of them where unknown
     """
 
     name: str
@@ -35,6 +40,8 @@ class Face:
     landmarks: Mapping[str, int] = field(default_factory=dict)
     units: Mapping[str, np.ndarray] = field(default_factory=dict)
     credit: str = ""
+    look: Look = field(default_factory=Look)
+    masks: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     def vertices_of(self, part: str) -> np.ndarray:
         """Return the vertices of ``part``, int, ascending; empty if the face has none."""

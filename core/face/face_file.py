@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import zipfile
 import zlib
@@ -11,8 +12,9 @@ import numpy as np
 
 from core.errors import UserFacingError
 from core.face.face import PARTS, Face
+from core.face.look import Look
 
-FORMAT = 1
+FORMAT = 2
 UNREADABLE = (OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile, zlib.error)
 
 
@@ -32,6 +34,9 @@ def save_face(face: Face, path: Path) -> None:
         landmark_vertices=np.array(list(face.landmarks.values()), np.int64),
         unit_names=np.array(list(face.units), np.str_),
         units=np.array(list(face.units.values()), np.float32).reshape(len(face.units), len(face.positions), 3),
+        look=np.str_(json.dumps(face.look.as_dict())),
+        mask_names=np.array(list(face.masks), np.str_),
+        masks=np.array(list(face.masks.values()), np.float32).reshape(len(face.masks), len(face.positions)),
     )
 
 
@@ -68,6 +73,8 @@ def read_face(path: Path) -> Face:
             landmarks=dict(zip(data["landmark_names"].tolist(), data["landmark_vertices"].tolist())),
             units=dict(zip(data["unit_names"].tolist(), data["units"])),
             credit=str(data["credit"]),
+            look=Look.from_dict(json.loads(str(data["look"]))),
+            masks=dict(zip(data["mask_names"].tolist(), data["masks"])),
         )
     except UNREADABLE as error:
         raise UserFacingError(f"{path} is not a readable face file.") from error
@@ -87,6 +94,7 @@ def _check(face: Face, path: Path) -> None:
         and face.part.max(initial=0) < len(PARTS)
         and all(0 <= number < count for number in numbers)
         and all(unit.shape == (count, 3) and np.isfinite(unit).all() for unit in face.units.values())
+        and all(mask.shape == (count,) and np.isfinite(mask).all() for mask in face.masks.values())
     )
     if not sound:
         raise UserFacingError(f"{path} is damaged: its arrays do not belong together.")

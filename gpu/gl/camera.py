@@ -102,6 +102,7 @@ def portrait_bounds(face: Face) -> np.ndarray:
     eyes, apart = (left + right) / 2, face.outer_eye_distance
     wide = 1.02 * apart
     portrait = np.array(
-        [[eyes[0] - wide, chin[1] - 0.42 * apart, low[2]], [eyes[0] + wide, eyes[1] + 1.32 * apart, high[2]]]
+        [[eyes[0] - wide, chin[1] - 0.42 * apart, low[2]], [eyes[0] + wide, eyes[1] + 1.45 * apart, high[2]]]
     )
+    high[1] += face.look.hair_mm if "hair" in face.masks else 0.0
     return np.stack([np.maximum(portrait[0], low), np.minimum(portrait[1], high)])

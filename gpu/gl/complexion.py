@@ -7,9 +7,10 @@ import numpy as np
 from core.face.face import PARTS, Face
 
 # Material numbers, as shaders/glsl/face.frag knows them.
-SKIN, EYE, TEETH, TONGUE, LASHES, SOCKET = range(6)
+SKIN, EYE, UPPER_TEETH, TONGUE, LASHES, SOCKET, LOWER_TEETH = range(7)
 _MATERIAL_OF_PART = {
-    "skin": SKIN, "eye_left": EYE, "eye_right": EYE, "upper_teeth": TEETH, "lower_teeth": TEETH, "tongue": TONGUE,
+    "skin": SKIN, "eye_left": EYE, "eye_right": EYE, "upper_teeth": UPPER_TEETH, "lower_teeth": LOWER_TEETH,
+    "tongue": TONGUE,
     "lashes_upper_left": LASHES, "lashes_upper_right": LASHES, "lashes_lower_left": LASHES,
     "lashes_lower_right": LASHES, "mouth_socket": SOCKET, "other": SKIN,
 }  # fmt: skip
@@ -24,33 +25,134 @@ def rest_places(face: Face) -> np.ndarray:
     """Return what each vertex keeps of its resting place, float32, shape (n_vertices, 3).
 
     Skin and the inside of the mouth: the place, mm. Eyeballs: the direction from the ball's centre, unit; the iris is
-    painted around +z of it, so it turns with the ball. Lashes: the direction around the middle of the eye's opening
-    as (cos, sin), and 0 at the root to 1 at the tip; lower lashes are thinner, as if they began past half-way.
+    painted around +z of it, so it turns with the ball. Lashes: 0..1 from the inner to the outer end, 0..1 from root to
+    tip, and strength; lower lashes are shorter and thinner.
     """
     places = np.array(face.positions, np.float32)
     for side in ("left", "right"):
         ball = face.vertices_of(f"eye_{side}")
         if not len(ball):
             continue
-        centre = (places[ball].min(axis=0) + places[ball].max(axis=0)) / 2
-        # the back of a cut eyeball is missing: its true centre lies a radius behind the front
+        centre = eyeball_centre(places[ball])
         radius = max(np.ptp(places[ball][:, :2], axis=0).max() / 2, 1e-3)
-        centre[2] = places[ball][:, 2].max() - radius
         offset = places[ball] - centre
         places[ball] = offset / np.maximum(np.linalg.norm(offset, axis=1, keepdims=True), 1e-6)
         for lid in ("upper", "lower"):
             lashes = face.vertices_of(f"lashes_{lid}_{side}")
             if len(lashes):
-                offset = face.positions[lashes] - centre
-                around = offset[:, :2] / np.maximum(np.linalg.norm(offset[:, :2], axis=1, keepdims=True), 1e-6)
+                at = face.positions[lashes]
+                outwards = (at[:, 0] - at[:, 0].min()) / max(float(np.ptp(at[:, 0])), 1e-6)
+                if centre[0] < 0:
+                    outwards = 1.0 - outwards
                 # roots lie on the lid, which hugs the ball; tips stand off
-                from_root = np.linalg.norm(offset, axis=1) - radius
+                from_root = np.linalg.norm(at - centre, axis=1) - radius
                 low, high = np.quantile(from_root, [0.25, 0.98])
                 tip = np.clip((from_root - low) / max(high - low, 1e-6), 0.0, 1.0)
-                if lid == "lower":
-                    tip = 0.6 + 0.4 * tip
-                places[lashes] = np.column_stack([around, tip])
+                upper = lid == "upper"
+                places[lashes] = np.column_stack(
+                    [outwards, tip if upper else 0.35 + 0.65 * tip, np.full(len(tip), 0.9 if upper else 0.45)]
+                )
     return places
+
+
+def blush_weights(face: Face) -> np.ndarray:
+    """Return where blood shows through, float32 0..1, shape (n_vertices,): cheeks, tip of the nose, chin, ears."""
+    weights = np.zeros(len(face.positions), np.float32)
+    at = {name: face.positions[vertex].astype(float) for name, vertex in face.landmarks.items()}
+    if not {"outer_eye_left", "outer_eye_right"} <= set(at):
+        return weights
+    scale = face.outer_eye_distance
+    spots = {"cheek_left": (1.0, 0.30), "cheek_right": (1.0, 0.30), "nose_tip": (0.9, 0.14), "chin": (0.35, 0.14)}
+    for name, (strength, size) in spots.items():
+        if name in at:
+            away = np.linalg.norm(face.positions - at[name], axis=1) / (size * scale)
+            weights = np.maximum(weights, strength * np.exp(-(away**2)))
+    ears = (np.abs(face.positions[:, 0]) > 0.91 * scale) & (np.abs(face.positions[:, 1]) < scale)
+    weights = np.maximum(weights, 0.7 * ears)
+    return (weights * (face.part == PARTS.index("skin"))).astype(np.float32)
+
+
+def beard_weights(face: Face) -> np.ndarray:
+    """Return where a beard would grow, float32 0..1, shape (n_vertices,): jaw, chin, upper lip."""
+    weights = np.zeros(len(face.positions), np.float32)
+    needed = ("mouth_corner_left", "mouth_corner_right", "nose_tip", "chin", "outer_eye_left", "outer_eye_right")
+    if any(name not in face.landmarks for name in needed):
+        return weights
+    scale = face.outer_eye_distance
+    left, right, nose, chin = (face.positions[face.landmarks[name]].astype(float) for name in needed[:4])
+    mouth = (left + right) / 2
+    x, y, z = face.positions.T.astype(float)
+    # the upper rim of a beard: from under the nose down past the mouth corners and up again to the ears
+    side = np.abs(x) / scale
+    under_nose = nose[1] - 0.17 * scale
+    rim = np.where(side < 0.22, under_nose, under_nose - 0.10 * scale + 0.75 * scale * np.clip(side - 0.42, 0.0, 1.0))
+    under = np.clip((rim - y) / (0.10 * scale), 0.0, 1.0)
+    above_neck = np.clip((y - (chin[1] - 0.42 * scale) + 0.25 * (mouth[2] - z)) / (0.20 * scale), 0.0, 1.0)
+    ahead_of_ear = np.clip((z - mouth[2] + 1.05 * scale) / (0.15 * scale), 0.0, 1.0)
+    weights[:] = under * above_neck * ahead_of_ear
+    return weights * (face.part == PARTS.index("skin"))
+
+
+def hair_depth(face: Face) -> np.ndarray:
+    """Return the mask ``hair`` of a face whose look has hair, float32, mm, shape (n_vertices,); else -99 all over."""
+    if "hair" not in face.masks or face.look.hair_mm <= 0:
+        return np.full(len(face.positions), -99.0, np.float32)
+    return np.asarray(face.masks["hair"], np.float32)
+
+
+def hair_lift(face: Face) -> np.ndarray:
+    """Return how far hair lifts each vertex off the scalp, float32, mm, shape (n_vertices,)."""
+    t = np.clip((hair_depth(face) + 1.0) / 16.0, 0.0, 1.0)
+    # more on the crown than at the nape
+    rise = np.clip((face.positions[:, 1] / max(float(face.positions[:, 1].max()), 1e-6) + 0.6) / 1.4, 0.15, 1.0)
+    return (face.look.hair_mm * t * (2.0 - t) * rise).astype(np.float32)
+
+
+def tooth_arch(face: Face) -> tuple[tuple[float, float, float], tuple[float, float]]:
+    """Return the arch of the upper teeth (z of its middle, half width, depth) and y of both incisor edges, mm."""
+    upper, lower = face.vertices_of("upper_teeth"), face.vertices_of("lower_teeth")
+    if not len(upper):
+        return (0.0, 25.0, 45.0), (0.0, 0.0)
+    at = face.positions[upper].astype(float)
+    half, depth = float(np.ptp(at[:, 0]) / 2), float(np.ptp(at[:, 2]))
+    edge = float(at[at[:, 2] > at[:, 2].max() - 0.25 * depth, 1].min())
+    below = face.positions[lower].astype(float)
+    top = edge
+    if len(lower):
+        top = float(below[below[:, 2] > below[:, 2].max() - 0.25 * depth, 1].max())
+    return (float(at[:, 2].max()) - depth, half, depth), (edge, top)
+
+
+def bust_ball(face: Face) -> tuple[float, float, float, float]:
+    """Return centre and radius, mm, of the ball at whose rim shoulders fade away; radius 0 where there are none."""
+    needed = ("outer_eye_left", "outer_eye_right", "chin")
+    if any(name not in face.landmarks for name in needed):
+        return 0.0, 0.0, 0.0, 0.0
+    skin = face.positions[face.vertices_of("skin")]
+    chin, scale = face.positions[face.landmarks["chin"]], face.outer_eye_distance
+    lowest = skin[:, 1].min()
+    if lowest > chin[1] - 0.9 * scale:
+        return 0.0, 0.0, 0.0, 0.0
+    middle = np.array([0.0, chin[1] + 0.13 * scale, chin[2] - 0.88 * scale])
+    reach = np.linalg.norm(skin[skin[:, 1] < chin[1] - 0.5 * scale] - middle, axis=1).max()
+    return (*map(float, middle), float(reach))
+
+
+def eyeball_centre(ball: np.ndarray) -> np.ndarray:
+    """Return the centre of an eyeball, shape (3,), mm, from its vertices (B, 3); the back may have been cut away."""
+    low, high = ball.min(axis=0).astype(float), ball.max(axis=0).astype(float)
+    centre, radius = (low + high) / 2, max(float((high - low)[:2].max()) / 2, 1e-3)
+    centre[2] = high[2] - radius
+    return centre
+
+
+def grain(size: int = 32, seed: int = 7) -> np.ndarray:
+    """Return smooth noise that repeats, uint8, shape (size, size, size, 4), spread over 0..255."""
+    from scipy.ndimage import gaussian_filter
+
+    noise = np.random.default_rng(seed).standard_normal((size, size, size, 4))
+    smooth = gaussian_filter(noise, (1.0, 1.0, 1.0, 0.0), mode="wrap")
+    return np.clip(128 + 52 * smooth / smooth.std(), 0, 255).astype(np.uint8)
 
 
 def lip_weights(face: Face) -> np.ndarray:
@@ -60,6 +162,8 @@ def lip_weights(face: Face) -> np.ndarray:
     All 0 where the corners are unknown.
     """
     weights = np.zeros(len(face.positions), np.float32)
+    if "lips" in face.masks:
+        return np.asarray(face.masks["lips"], np.float32)
     if "mouth_corner_left" not in face.landmarks or "mouth_corner_right" not in face.landmarks:
         return weights
     left, right = (face.positions[face.landmarks[f"mouth_corner_{side}"]].astype(float) for side in ("left", "right"))

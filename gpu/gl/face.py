@@ -1,4 +1,4 @@
-"""Draws a face: shaded under studio lights, as a wireframe, or its markers alone."""
+"""Draws a face: textured or plainly shaded under studio lights, as a wireframe, or its markers alone."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from core.face.face import Face
 from gpu.gl import complexion
 from gpu.gl.camera import Camera
-from gpu.gl.complexion import LASHES, SKIN, SOCKET, TEETH, TONGUE
+from gpu.gl.complexion import LASHES, LOWER_TEETH, SKIN, SOCKET, TONGUE, UPPER_TEETH
 from gpu.gl.markers import MarkerCloud
 from gpu.gl.normals import VertexNormals
 from gpu.gl.occlusion import openness
@@ -26,6 +26,7 @@ class Style(Enum):
     MARKERS = "markers"
     WIREFRAME = "wireframe"
     SHADED = "shaded"
+    TEXTURED = "textured"
 
 
 class FaceRenderer:
@@ -38,10 +39,15 @@ class FaceRenderer:
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
         self._shaded = compile_program(ctx, "glsl/face.vert", "glsl/face.frag")
+        self._cover = compile_program(ctx, "glsl/face.vert", "glsl/cover.frag")
         self._wire = compile_program(ctx, "glsl/face.vert", "glsl/wire.frag", "glsl/wire.geom")
         self._backdrop = compile_program(ctx, "glsl/background.vert", "glsl/background.frag")
         self._backdrop_array = ctx.vertex_array(self._backdrop, [])
         self.markers = MarkerCloud(ctx)
+        grain = complexion.grain()
+        self._grain = ctx.texture3d(grain.shape[:3], 4, grain.tobytes())
+        self._grain.filter = moderngl.LINEAR, moderngl.LINEAR
+        self._picture: moderngl.Texture | None = None
         self._face: Face | None = None
         self._mesh: list = []
 
@@ -60,34 +66,42 @@ class FaceRenderer:
         self._n_lash_corners = 3 * int(is_lash.sum())
         self._normals = VertexNormals(triangles, rest)
         normals = self._normals(rest)
-        surface = np.empty((len(rest), 3), np.float32)
+        surface = np.empty((len(rest), 4), np.float32)
         surface[:, 0] = material
         surface[:, 1] = complexion.lip_weights(face) if lips is None else lips
         surface[:, 2] = self._openness(rest, normals, triangles, material)
+        surface[:, 3] = complexion.blush_weights(face)
+        hair = np.column_stack([complexion.hair_depth(face), complexion.beard_weights(face)]).astype(np.float32)
+        uv = np.zeros((len(rest), 2), np.float32) if face.uv is None else np.ascontiguousarray(face.uv, np.float32)
+        self._hair_lift = complexion.hair_lift(face)
+        self._haired = np.flatnonzero(self._hair_lift > 0)
 
         ctx = self._ctx
         self._positions = ctx.buffer(rest.tobytes(), dynamic=True)
         self._normal_buffer = ctx.buffer(normals.tobytes(), dynamic=True)
         places, surfaces = ctx.buffer(complexion.rest_places(face).tobytes()), ctx.buffer(surface.tobytes())
+        hairs, uvs = ctx.buffer(hair.tobytes()), ctx.buffer(uv.tobytes())
         indices = ctx.buffer(triangles.tobytes())
         inputs = [
             (self._positions, "3f", "in_position"),
             (self._normal_buffer, "3f", "in_normal"),
             (places, "3f", "in_rest"),
-            (surfaces, "3f", "in_surface"),
+            (surfaces, "4f", "in_surface"),
+            (hairs, "2f", "in_hair"),
+            (uvs, "2f", "in_uv"),
         ]
         self._shaded_array = ctx.vertex_array(self._shaded, inputs, indices, skip_errors=True)
+        self._cover_array = ctx.vertex_array(self._cover, inputs, indices, skip_errors=True)
         self._wire_array = ctx.vertex_array(self._wire, inputs, indices, skip_errors=True)
         hidden = np.zeros((-(-max(len(triangles), 1) // _EDGE_ROW), _EDGE_ROW), np.uint8)
         hidden.ravel()[: len(triangles)] = complexion.quad_diagonals(triangles, rest)
         self._hidden_edges = ctx.texture((_EDGE_ROW, len(hidden)), 1, hidden.tobytes(), dtype="u1", alignment=1)
-        self._mesh = [self._shaded_array, self._wire_array, self._positions, self._normal_buffer]
-        self._mesh += [places, surfaces, indices, self._hidden_edges]
+        self._mesh = [self._shaded_array, self._cover_array, self._wire_array, self._positions, self._normal_buffer]
+        self._mesh += [places, surfaces, hairs, uvs, indices, self._hidden_edges]
 
-        arcs, width_mm = complexion.brow_arcs(face)
-        self._shaded["brows"].write(arcs.tobytes())
-        self._shaded["brow_width_mm"].value = width_mm
         self._face = face
+        self._paint(face)
+        self.set_positions(rest)
 
     @property
     def face(self) -> Face | None:
@@ -101,8 +115,33 @@ class FaceRenderer:
         if positions.shape != self._face.positions.shape:
             raise ValueError(f"positions have shape {positions.shape}; the face has {self._face.positions.shape}")
         positions = np.ascontiguousarray(positions, np.float32)
+        normals = self._normals(positions)
+        if len(self._haired):
+            away = normals[self._haired]
+            length = np.maximum(np.sqrt(np.einsum("ij,ij->i", away, away)), 1e-9)
+            positions = positions.copy()
+            positions[self._haired] += away * (self._hair_lift[self._haired] / length)[:, None]
+            normals = self._normals(positions)
         self._positions.write(positions)
-        self._normal_buffer.write(np.ascontiguousarray(self._normals(positions)))
+        self._normal_buffer.write(np.ascontiguousarray(normals))
+
+    def set_texture(self, picture: np.ndarray | None) -> None:
+        """Paint the face of the style `Style.TEXTURED` with a picture by its texture coordinates.
+
+        picture : uint8, shape (height, width, 3), sRGB, top row first; None: the procedural skin. It stays for other
+        faces until it is replaced; a face without texture coordinates keeps its procedural skin
+        """
+        if self._picture is not None:
+            self._picture.release()
+            self._picture = None
+        if picture is not None:
+            if picture.ndim != 3 or picture.shape[2] != 3 or picture.dtype != np.uint8:
+                raise ValueError(f"a texture is uint8 of shape (height, width, 3), not {picture.dtype} {picture.shape}")
+            height, width = picture.shape[:2]
+            # texture coordinates count upwards, pictures downwards
+            self._picture = self._ctx.texture((width, height), 3, picture[::-1].tobytes(), alignment=1)
+            self._picture.build_mipmaps()
+            self._picture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
 
     def set_markers(
         self, positions: np.ndarray, colours: np.ndarray | None = None, links: np.ndarray | None = None
@@ -141,26 +180,57 @@ class FaceRenderer:
         """Free all GL objects; the renderer is of no use afterwards."""
         self._free_mesh()
         self.markers.release()
-        for thing in (self._backdrop_array, self._backdrop, self._shaded, self._wire):
+        self.set_texture(None)
+        for thing in (self._backdrop_array, self._backdrop, self._shaded, self._cover, self._wire, self._grain):
             thing.release()
 
     def _draw_mesh(self, view: np.ndarray, projection: np.ndarray, size_px: tuple[int, int], style: Style) -> None:
-        self._ctx.enable_only(moderngl.DEPTH_TEST)
-        program = self._shaded if style is Style.SHADED else self._wire
-        program["view"].write(np.ascontiguousarray(view.T, np.float32).tobytes())
-        program["projection"].write(np.ascontiguousarray(projection.T, np.float32).tobytes())
-        if style is Style.SHADED:
-            n_solid = 3 * len(self._face.triangles) - self._n_lash_corners
-            self._shaded_array.render(vertices=n_solid)
-            if self._n_lash_corners:
-                ctx = self._ctx
-                ctx.enable(moderngl.BLEND)
-                ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ZERO, moderngl.ONE
-                self._shaded_array.render(vertices=self._n_lash_corners, first=n_solid)
+        ctx = self._ctx
+        ctx.enable_only(moderngl.DEPTH_TEST)
+        programs = [self._wire] if style is Style.WIREFRAME else [self._cover, self._shaded]
+        for program in programs:
+            program["view"].write(np.ascontiguousarray(view.T, np.float32).tobytes())
+            program["projection"].write(np.ascontiguousarray(projection.T, np.float32).tobytes())
+        programs[-1]["viewport_px"].value = size_px
+        if style is Style.WIREFRAME:
+            self._hidden_edges.use(0)
+            self._wire_array.render()
             return
-        program["viewport_px"].value = size_px
-        self._hidden_edges.use(0)
-        self._wire_array.render()
+        self._shaded["texture_mode"].value = self._texture_mode(style)
+        self._grain.use(0)
+        if self._picture is not None:
+            self._picture.use(1)
+        n_solid = 3 * len(self._face.triangles) - self._n_lash_corners
+        self._cover_array.render(vertices=n_solid)
+        ctx.depth_func = "<="
+        self._shaded_array.render(vertices=n_solid)
+        if self._n_lash_corners:
+            ctx.enable(moderngl.BLEND)
+            ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ZERO, moderngl.ONE
+            self._shaded_array.render(vertices=self._n_lash_corners, first=n_solid)
+        ctx.depth_func = "<"
+
+    def _texture_mode(self, style: Style) -> int:
+        if style is not Style.TEXTURED:
+            return 0
+        return 1 if self._picture is None or self._face.uv is None else 2
+
+    def _paint(self, face: Face) -> None:
+        """Give the shader what the face's look and landmarks say."""
+        look, program = face.look, self._shaded
+        arcs, width_mm = complexion.brow_arcs(face)
+        arch, edges = complexion.tooth_arch(face)
+        program["grain"].value, program["picture"].value = 0, 1
+        program["brows"].write(arcs.tobytes())
+        program["brow_width_mm"].value = width_mm
+        program["brow_weight"].value = look.brow_weight
+        for name in ("skin", "hair", "iris"):
+            program[f"{name}_colour"].value = getattr(look, name)
+        program["lip_colour"].value, program["brow_colour"].value = look.lips, look.brows
+        program["marks"].value = look.lip_tint, look.blush, look.freckles, look.stubble
+        program["age_and_lash"].value = look.age, look.lash_weight
+        program["arch"].value, program["edges"].value = arch, edges
+        program["bust_mm"].value = complexion.bust_ball(face)
 
     def _openness(
         self, rest: np.ndarray, normals: np.ndarray, triangles: np.ndarray, material: np.ndarray
@@ -169,11 +239,11 @@ class FaceRenderer:
         throws = (material == SKIN) | (material == SOCKET)
         shadowing = triangles[throws[triangles].all(axis=1)]
         light = openness(self._ctx, rest, normals, shadowing)
-        inside = np.isin(material, (TEETH, TONGUE))
+        inside = np.isin(material, (UPPER_TEETH, LOWER_TEETH, TONGUE))
         if inside.any():
             # the mouth is shut at rest, so depth behind the front teeth stands for the shadow of an open one
             front_mm = rest[inside, 2].max()
-            light[inside] = np.clip(1.0 - (front_mm - rest[inside, 2]) / 42.0, 0.05, 1.0) ** 1.5
+            light[inside] = np.clip(1.0 - (front_mm - rest[inside, 2]) / 36.0, 0.04, 1.0) ** 1.5
         light[material == SOCKET] = np.clip(light[material == SOCKET], 0.10, 0.5)
         return light
 

@@ -1,115 +1,172 @@
 #version 330 core
 // The shaded face. One work-item: one pixel of the mesh; see face.vert for what comes in.
 //   Alpha is 1 but for lashes, which are drawn last.
-//   brows  two arcs, each three points (inner end, arch, outer end), mm at rest; brow_width_mm 0: none
+//   texture_mode  0: plain materials; 1: procedural skin; 2: `picture`, sRGB, on all that has texture coordinates
+//   arch  of the teeth: z of its middle, half its width, its depth; edges: y of the incisors' edges; mm at rest
+//   bust_mm  centre and radius of the ball at whose rim the shoulders fade into the backdrop; radius 0: none
 #include "light.glsl"
+#include "backdrop.glsl"
+#include "hairs.glsl"
 
 in vec3 pos_view;
 in vec3 normal_view;
 in vec3 rest;
-in vec2 lip_open;
+in vec3 surface;
+in vec2 hair;
+in vec2 uv;
 flat in int material;
 
-uniform vec3 brows[6];
-uniform float brow_width_mm;
+uniform int texture_mode;
+uniform sampler2D picture;
+uniform mat4 view;
+uniform vec2 viewport_px;
+uniform vec3 skin_colour;
+uniform vec3 lip_colour;
+uniform vec3 brow_colour;
+uniform vec3 hair_colour;
+uniform vec3 iris_colour;
+uniform vec4 marks;         // lip tint, blush, freckles, stubble
+uniform vec2 age_and_lash;  // age, weight of the lashes
+uniform vec3 arch;
+uniform vec2 edges;
+uniform vec4 bust_mm;
 
 out vec4 colour;
 
-const vec3 SKIN = vec3(0.520, 0.275, 0.185);
-const vec3 LIP = vec3(0.400, 0.105, 0.095);
-const vec3 BROW = vec3(0.050, 0.028, 0.018);
-const vec3 SCLERA = vec3(0.480, 0.440, 0.405);
-const vec3 IRIS = vec3(0.085, 0.120, 0.110);
-const vec3 TOOTH = vec3(0.560, 0.480, 0.370);
-const vec3 TONGUE = vec3(0.310, 0.085, 0.080);
+const vec3 SCLERA = vec3(0.500, 0.455, 0.420);
+const vec3 TOOTH = vec3(0.640, 0.560, 0.440);
+const vec3 GUM = vec3(0.330, 0.090, 0.080);
+const vec3 TONGUE = vec3(0.360, 0.105, 0.095);
 const vec3 SOCKET = vec3(0.120, 0.022, 0.018);
 const vec3 LASH = vec3(0.012, 0.008, 0.007);
 
-float hash(vec2 p) {
-    return fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453);
-}
-
-// How much of an eyebrow covers this place: a curve through three points, hair thin at both ends and at the rims.
-float brow_cover() {
-    float cover = 0.0;
-    for (int side = 0; side < 2; side++) {
-        vec2 inner = brows[3 * side].xy, arch = brows[3 * side + 1].xy, outer = brows[3 * side + 2].xy;
-        float u = (rest.x - inner.x) / (outer.x - inner.x);
-        float top = (arch.x - inner.x) / (outer.x - inner.x);
-        float rise = arch.y - mix(inner.y, outer.y, top);
-        float middle = mix(inner.y, outer.y, u) + rise * u * (1.0 - u) / (top * (1.0 - top));
-        float width = 0.5 * brow_width_mm * mix(1.0, 0.40, u * u);
-        float hair = 0.72 + 0.45 * hash(floor(vec2(rest.x * 2.6 + abs(rest.y) * 1.3, rest.y * 0.5)));
-        float here = 1.0 - smoothstep(0.35, 1.0, abs(rest.y - middle) / width);
-        cover = max(cover, here * hair * smoothstep(-0.06, 0.16, u) * (1.0 - smoothstep(0.78, 1.04, u)));
-    }
-    return clamp(cover, 0.0, 0.85) * step(brows[1].z - 25.0, rest.z);
-}
-
-// Enamel is whole in the mesh; the gaps between teeth are painted, every 0.2 rad along the arch.
-float tooth_gaps() {
-    float along = atan(rest.x, rest.z + 22.0) / 0.20;
-    float gap = abs(fract(along) - 0.5);
-    return 1.0 - 0.45 * smoothstep(0.40, 0.49, gap);
-}
-
 vec3 skin(vec3 n, vec3 to_eye) {
-    float lip = smoothstep(0.25, 0.75, lip_open.x);
-    float open = lip_open.y;
-    vec3 albedo = mix(SKIN, LIP, lip * 0.72);
-    float brow = abs(rest.y - brows[1].y) < 1.5 * brow_width_mm ? brow_cover() : 0.0;
-    albedo = mix(albedo, BROW, brow);
-    // light that leaks into shaded skin is red
-    vec3 bleed = mix(vec3(0.80, 0.46, 0.38), vec3(1.0), open);
-    vec3 lit = albedo * diffuse_light(n, vec3(0.42, 0.20, 0.14), open) * mix(bleed, vec3(1.0), 0.4);
-    float gloss = mix(0.55, 1.0, lip) * (1.0 - 0.8 * brow) * open;
-    lit += highlights(n, to_eye, mix(16.0, 42.0, lip), 0.030) * gloss;
+    float lip = smoothstep(0.20, 0.75, surface.x), open = surface.y, blush = surface.z, age = age_and_lash.x;
+    float under_hair = hair.x;
+    vec3 albedo = skin_colour;
+    float gloss = 0.55;
+    if (texture_mode == 2) {
+        vec3 painted = texture(picture, uv).rgb;
+        albedo = painted * painted * (0.2 + 0.8 * painted);
+        lip = 0.0;
+        under_hair = -99.0;
+    } else {
+        albedo = mix(albedo, albedo * vec3(1.10, 0.74, 0.72), marks.y * 0.55 * blush);
+        if (texture_mode == 1) {
+            vec4 broad = texture(grain, rest * 0.0042), fine = texture(grain, rest * 0.047);
+            albedo *= 1.0 + (0.10 + 0.06 * age) * (broad.r - 0.5) + 0.11 * (fine.g - 0.5);
+            albedo *= mix(vec3(1.0), vec3(1.05, 0.90, 0.88), (0.5 + 0.3 * age) * smoothstep(0.45, 0.75, broad.g));
+            float spot = smoothstep(0.66, 0.78, fine.b) * blush;
+            albedo *= 1.0 - vec3(0.20, 0.34, 0.40) * spot * marks.z;
+            float blotch = smoothstep(0.64, 0.74, broad.b) * age;
+            albedo *= 1.0 - vec3(0.06, 0.10, 0.12) * blotch;
+            // pores and creases: three noises make one small tilt
+            n = normalize(n + (0.09 + 0.08 * age) * (1.0 - lip) * (fine.rga - 0.5));
+            gloss *= 0.75 + 0.5 * fine.r;
+            float shadow = marks.w * hair.y * (0.45 + 0.55 * smoothstep(0.35, 0.65, fine.a));
+            albedo = mix(albedo, albedo * 0.45 + hair_colour * 0.25, 0.55 * shadow);
+        }
+        albedo = mix(albedo, lip_colour, lip * marks.x);
+        float brow = abs(rest.y - brows[1].y) < 2.0 * brow_width_mm && rest.z > brows[1].z - 25.0 ? brow_cover(rest) : 0.0;
+        albedo = mix(albedo, brow_colour, brow);
+        gloss *= 1.0 - 0.8 * brow;
+    }
+    gloss = mix(gloss, 1.0, lip) * open;
+    vec3 bleed = mix(vec3(0.86, 0.60, 0.54), vec3(1.0), open);  // light that leaks into shaded skin is red
+    vec3 lit = albedo * bleed * diffuse_light(n, vec3(0.42, 0.20, 0.14), open);
+    lit += highlights(n, to_eye, mix(15.0, 48.0, lip), 0.030) * gloss;
+    if (under_hair > -4.0) {
+        float strand = strands(rest);
+        float cover = smoothstep(-3.5, 4.5, under_hair + 10.0 * (strand - 0.80));
+        vec3 back = view[2].xyz;
+        vec3 along = normalize(back - n * dot(n, back));
+        float across = dot(along, normalize(KEY_DIRECTION + to_eye)), other = dot(along, normalize(FILL_DIRECTION + to_eye));
+        float sheen = exp2(-26.0 * across * across) + 0.35 * exp2(-26.0 * other * other);
+        vec3 hairs = hair_colour * strand * strand * diffuse_light(n, vec3(0.3), 0.25 + 0.75 * open);
+        hairs += (0.35 * hair_colour + 0.022) * KEY_COLOUR * sheen * strand * open * max(n.z, 0.0);
+        lit = mix(lit, hairs, cover);
+    }
     return lit + rim_light(n, to_eye, open) * 0.30;
 }
 
 vec3 eye(vec3 n, vec3 to_eye) {
     vec3 direction = normalize(rest);
     float angle = acos(clamp(direction.z, -1.0, 1.0));
+    const float IRIS_RIM = 0.47, PUPIL_RIM = 0.18;
     float around = atan(direction.y, direction.x);
-    const float IRIS_RIM = 0.50, PUPIL_RIM = 0.19;
-    float fibres = 0.75 + 0.35 * sin(around * 38.0 + 3.0 * sin(around * 7.0)) * sin(around * 17.0 + 1.0);
+    float fibres = 0.78 + 0.34 * sin(around * 38.0 + 3.0 * sin(around * 7.0)) * sin(around * 17.0 + 1.0);
     float depth = smoothstep(PUPIL_RIM, IRIS_RIM, angle);
-    vec3 iris = IRIS * fibres * mix(1.5, 0.7, depth) + vec3(0.06, 0.035, 0.012) * (1.0 - depth);
-    iris *= 1.0 - 0.75 * smoothstep(IRIS_RIM - 0.07, IRIS_RIM, angle);
+    vec3 iris = iris_colour * fibres * mix(1.7, 0.85, depth) + vec3(0.05, 0.03, 0.01) * (1.0 - depth);
+    // light that enters on one side of the cornea brightens the far side of the iris
+    iris *= 1.0 + 1.1 * smoothstep(0.05, IRIS_RIM, angle) * max(dot(direction.xy, -KEY_DIRECTION.xy), 0.0) * 2.2;
+    iris *= 1.0 - 0.80 * smoothstep(IRIS_RIM - 0.09, IRIS_RIM, angle);
     iris = mix(vec3(0.004), iris, smoothstep(PUPIL_RIM - 0.025, PUPIL_RIM + 0.025, angle));
-    vec3 white = mix(SCLERA, SCLERA * vec3(0.86, 0.60, 0.55), smoothstep(0.75, 1.35, angle));
-    float edge = fwidth(angle) + 0.02;
+    vec3 white = mix(SCLERA, SCLERA * vec3(0.88, 0.62, 0.56), smoothstep(0.75, 1.35, angle) * (1.0 + 0.4 * age_and_lash.x));
+    float edge = fwidth(angle) + 0.025;
     vec3 albedo = mix(iris, white, smoothstep(IRIS_RIM - edge, IRIS_RIM + edge, angle));
-    // lids throw a soft shadow on the upper part of the ball
-    float lid = 1.0 - 0.55 * smoothstep(0.10, 0.60, direction.y);
-    vec3 lit = albedo * diffuse_light(n, vec3(0.25), 0.8) * lid;
-    return lit + highlights(n, to_eye, 260.0, 0.05) * 1.3 + highlights(n, to_eye, 30.0, 0.03) * 0.2;
+    // lids throw a soft shadow on the upper part of the ball, wherever it looks
+    float up = dot(n, vec3(0.0, 1.0, 0.0));
+    vec3 lit = albedo * diffuse_light(n, vec3(0.30), 0.85) * (1.0 - 0.60 * smoothstep(0.05, 0.55, up));
+    lit += highlights(n, to_eye, 420.0, 0.05) * 1.1 + highlights(n, to_eye, 40.0, 0.03) * 0.12;
+    return lit;
+}
+
+// Teeth are one band in the mesh; crowns, gaps and gums are painted on an even arch.
+vec3 tooth(vec3 to_eye) {
+    float turn = atan(rest.x / arch.y, (rest.z - arch.x) / arch.z);
+    vec3 n = normalize(mat3(view) * vec3(sin(turn) / arch.y, 0.0, cos(turn) / arch.z));
+    bool upper = material == 2;
+    // incisors are wide, the teeth beside them narrower
+    float along = turn / (upper ? 0.30 : 0.22) + (upper ? 0.0 : 0.5);
+    float within = abs(fract(along) - 0.5) * 2.0;
+    float above = upper ? rest.y - edges.x : edges.y - rest.y;
+    float gap = smoothstep(0.86, 1.0, within);
+    vec3 bulge = mat3(view) * vec3(cos(turn), 0.0, -sin(turn)) * (fract(along) - 0.5);
+    n = normalize(n + 0.55 * bulge);
+    float gum = smoothstep(8.6, 9.6, above + 2.0 * within * within);
+    vec3 albedo = mix(TOOTH * (1.0 - 0.50 * gap) * mix(1.06, 0.94, smoothstep(0.0, 8.0, above)), GUM, gum);
+    albedo *= mix(vec3(1.0), vec3(0.92, 0.86, 0.74), age_and_lash.x);
+    float open = surface.y;
+    vec3 lit = albedo * diffuse_light(n, vec3(0.45, 0.40, 0.34), 0.65) * open;
+    return lit + highlights(n, to_eye, 60.0, 0.04) * open * open * 0.7;
 }
 
 void main() {
     vec3 to_eye = normalize(-pos_view);
     vec3 n = normalize(normal_view);
-    float open = lip_open.y;
+    float open = surface.y;
     vec3 lit;
     float cover = 1.0;
     if (material == 0) {
-        lit = skin(n, to_eye);
-        if (!gl_FrontFacing) lit = SOCKET * 0.12;
+        lit = gl_FrontFacing ? skin(n, to_eye) : SOCKET * 0.12;
     } else if (material == 1) {
         lit = eye(n, to_eye);
-    } else if (material == 2) {
-        lit = TOOTH * tooth_gaps() * diffuse_light(n, vec3(0.45, 0.40, 0.34), 0.6) * open;
-        lit += highlights(n, to_eye, 60.0, 0.04) * open * open;
+    } else if (material == 2 || material == 6) {
+        lit = tooth(to_eye);
     } else if (material == 3) {
-        lit = TONGUE * diffuse_light(n, vec3(0.35, 0.2, 0.15), 0.8) * open + highlights(n, to_eye, 40.0, 0.04) * open;
+        float groove = 1.0 - 0.35 * exp(-rest.x * rest.x * 0.35);
+        lit = TONGUE * groove * diffuse_light(n, vec3(0.35, 0.2, 0.15), 0.8) * open;
+        lit += highlights(n, to_eye, 30.0, 0.035) * open * 0.7;
     } else if (material == 4) {
-        // many fine hairs, thinner towards their tips
-        float hairs = abs(sin(atan(rest.y, rest.x) * 61.0));
-        cover = (1.0 - smoothstep(0.15, 1.0, rest.z)) * mix(1.0, 0.25 + 0.75 * smoothstep(0.25, 0.75, hairs), rest.z);
+        // rest: 0..1 from the inner to the outer corner, root to tip, and strength; single hairs that lean outwards
+        float along = rest.x * 34.0 + rest.y * (rest.x - 0.35) * 3.0;
+        float hairs = 1.0 - abs(fract(along) * 2.0 - 1.0);
+        float thin = mix(0.15, 0.90, rest.y);
+        float line = smoothstep(thin - 0.18, thin + 0.25, hairs);
+        float ends = smoothstep(0.04, 0.22, rest.x) * (1.0 - smoothstep(0.86, 0.97, rest.x));
+        cover = line * ends * (1.0 - smoothstep(0.75, 1.0, rest.y)) * rest.z * age_and_lash.y;
         lit = LASH;
     } else {
         if (dot(n, to_eye) < 0.0) n = -n;
         lit = SOCKET * diffuse_light(n, vec3(0.2), 0.5) * open;
     }
-    colour = vec4(to_screen(lit), cover);
+    vec3 shown = to_screen(lit);
+    if (bust_mm.w > 0.0 && material == 0) {
+        float away = length(rest - bust_mm.xyz) / bust_mm.w;
+        if (away > 0.80 && rest.y < bust_mm.y + 0.35 * bust_mm.w) {
+            vec3 behind = backdrop(gl_FragCoord.xy / viewport_px * 2.0 - 1.0);
+            shown = mix(shown, behind, smoothstep(0.80, 0.985, away));
+        }
+    }
+    colour = vec4(shown, cover);
 }

@@ -1,19 +1,27 @@
 #version 330 core
 // A face's vertices to clip space. One work-item: one vertex.
 //   in_position  vec3, mm, world space, this frame     in_normal  vec3, any length, world space, this frame
-//   in_rest      vec3, mm, world space at rest; of eyeballs the direction from the eyeball's centre, unit
-//   in_surface   vec3: material number (gpu/gl/face.py), lip 0..1, openness to light at rest 0..1
+//   in_rest      vec3, what it keeps of its resting place; see gpu/gl/complexion.py
+//   in_surface   vec4: material number (gpu/gl/complexion.py), lip 0..1, openness to light at rest 0..1, blush 0..1
+//   in_hair      vec2: depth under the hairline, mm; beard 0..1
+//   in_uv        vec2: texture coordinates, v up
 #include "space.glsl"
 
 in vec3 in_position;
 in vec3 in_normal;
 in vec3 in_rest;
-in vec3 in_surface;
+in vec4 in_surface;
+in vec2 in_hair;
+in vec2 in_uv;
+
+invariant gl_Position;
 
 out vec3 pos_view;
 out vec3 normal_view;
 out vec3 rest;
-out vec2 lip_open;
+out vec3 surface;
+out vec2 hair;
+out vec2 uv;
 flat out int material;
 
 void main() {
@@ -23,6 +31,8 @@ void main() {
     normal_view /= max(length(normal_view), 1e-12);
     rest = in_rest;
     material = int(in_surface.x + 0.5);
-    lip_open = in_surface.yz;
+    surface = in_surface.yzw;
+    hair = in_hair;
+    uv = in_uv;
     gl_Position = projection * at;
 }

@@ -6,7 +6,6 @@ layout(triangle_strip, max_vertices = 3) out;
 
 in vec3 pos_view[];
 in vec3 normal_view[];
-in vec2 lip_open[];
 flat in int material[];
 
 uniform usampler2D hidden_edges;
