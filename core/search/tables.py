@@ -62,7 +62,10 @@ class SearchTables:
             self.first_leave = max(self.first_leave, changed[-1])
 
     def best(self) -> MotionPath | None:
-        """Return the best path, advancing both tables until they meet; None when equal costs need the canonical rule."""
+        """Return the best path, advancing both tables until they meet.
+
+        None when several paths cost the same: which one is the answer is settled from the last slot backward.
+        """
         while self.n_arrive <= self.first_leave:
             self._advance()
         p = self.first_leave
