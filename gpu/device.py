@@ -7,7 +7,7 @@ import logging
 from core.errors import UserFacingError
 from core.search.compute import NumpyKernels, SearchKernels
 
-BACKENDS = ("auto", "numpy", "opencl")
+BACKENDS = ("auto", "numpy", "opencl", "glsl")
 log = logging.getLogger("gpu")
 
 
@@ -19,13 +19,10 @@ def open_kernels(backend: str = "auto") -> tuple[SearchKernels, str]:
     """
     if backend not in BACKENDS:
         raise UserFacingError(f"There is no compute backend '{backend}'.", f"Choose one of {', '.join(BACKENDS)}.")
-    if backend == "numpy":
-        kernels: SearchKernels = NumpyKernels()
-        return kernels, describe(kernels)
     try:
-        kernels = _open_opencl()
+        kernels = {"numpy": NumpyKernels, "glsl": _open_glsl}.get(backend, _open_opencl)()
     except UserFacingError as error:
-        if backend == "opencl":
+        if backend != "auto":
             raise
         sentence = f"{error} The search runs on numpy."
         log.info(sentence)
@@ -46,3 +43,11 @@ def _open_opencl() -> SearchKernels:
     except ImportError as error:
         raise UserFacingError(f"OpenCL cannot be loaded ({error}).") from error
     return OpenClKernels()
+
+
+def _open_glsl() -> SearchKernels:
+    try:
+        from gpu.glsl.min_plus import GlslKernels
+    except ImportError as error:
+        raise UserFacingError(f"OpenGL cannot be loaded ({error}).") from error
+    return GlslKernels()

@@ -138,7 +138,11 @@ def explore(examples, steps):
     run_state_machine_as_test(
         Editing,
         settings=settings(
-            max_examples=examples, stateful_step_count=steps, deadline=None, suppress_health_check=checks
+            max_examples=examples,
+            stateful_step_count=steps,
+            deadline=None,
+            derandomize=True,
+            suppress_health_check=checks,
         ),
     )
 
