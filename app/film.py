@@ -4,34 +4,23 @@ from __future__ import annotations
 
 import shutil
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app import texts
-from app.export import VideoSettings, export
+from app.export import VideoSettings
+from app.film_process import FilmRequest, compose_apart
 from app.jobs import JobRunner
 from app.pictures import FaceRig
 from core.document.document import Document
 from core.errors import UserFacingError
-from core.media.audio import Audio
 from core.media.swap_in import swapped_in
 from core.media.video import FRAME_RATES
 from core.progress import Progress
-from core.synthesis.marker_motion import MarkerMotion
 
 _SIZE_PX = (800, 600)
 _COMPOSE_AFTER_MS = 400
-
-
-@dataclass(frozen=True)
-class _FilmRequest:
-    motion: MarkerMotion
-    audio: Audio
-    rig: FaceRig | None
-    settings: VideoSettings
-    path: Path
 
 
 class FilmComposer(QObject):
@@ -96,8 +85,8 @@ class FilmComposer(QObject):
         width, height = _SIZE_PX
         style = "face" if self._rig is not None else "markers"
         settings = VideoSettings(fps=FRAME_RATES[self.fps_name], width=width, height=height, style=style)
-        request = _FilmRequest(answer.motion, speech.audio, self._rig, settings, path)
-        self._jobs.start("film", texts.COMPOSING, request, _compose, self._on_composed, self._on_failed)
+        request = FilmRequest(answer.motion, speech.audio, self._rig, settings, path)
+        self._jobs.start("film", texts.COMPOSING, request, compose_apart, self._on_composed, self._on_failed)
 
     def save(self, path: Path) -> None:
         """Copy the film to ``path``."""
@@ -116,11 +105,6 @@ class FilmComposer(QObject):
 
     def _on_failed(self, error: UserFacingError) -> None:
         self.failed.emit(str(error))
-
-
-def _compose(request: _FilmRequest, progress: Progress) -> Path:
-    export(request.motion, request.audio, request.rig, request.path, request.settings, progress)
-    return request.path
 
 
 def _copy(request: tuple[Path, Path], _progress: Progress) -> None:

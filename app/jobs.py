@@ -5,7 +5,9 @@ from __future__ import annotations
 import logging
 import threading
 import time
+import traceback
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from PySide6.QtCore import QObject, QRunnable, Qt, QThreadPool, Signal
@@ -55,14 +57,32 @@ class _Job(QRunnable):
 
     def run(self) -> None:
         """Do the work, on a worker."""
-        answer, error = None, None
+        answer, failure = None, None
         try:
             if self.cancelled.is_set():
                 raise Cancelled
             answer = self._work(self._request, _JobProgress(self))
-        except BaseException as caught:  # whatever it is, the main thread has to hear that the job is over
-            error = caught
-        self.voice.ended.emit(self, answer, error)
+        except BaseException as error:  # whatever it is, the main thread has to hear that the job is over
+            failure = _Failure.of(error, self.title)
+            # what the failed work held (a generator that owns a GL context) must go in the thread that made it
+            traceback.clear_frames(error.__traceback__)
+        self.voice.ended.emit(self, answer, failure)
+
+
+@dataclass(frozen=True)
+class _Failure:
+    """What is left of an exception once it leaves its thread: a sentence and a remedy, or nothing for a cancel."""
+
+    error: UserFacingError | None
+
+    @classmethod
+    def of(cls, error: BaseException, title: str) -> _Failure:
+        if isinstance(error, Cancelled):
+            return cls(None)
+        if isinstance(error, UserFacingError):
+            return cls(UserFacingError(error.message, error.remedy))
+        log.error("%s failed", title or "a job", exc_info=error)
+        return cls(UserFacingError(UNEXPECTED.format(what=title.lower(), error=type(error).__name__)))
 
 
 class JobRunner(QObject):
@@ -141,21 +161,17 @@ class JobRunner(QObject):
         if self._current.get(job.kind) is job:
             self.progressed.emit(job.kind, fraction, message)
 
-    def _on_ended(self, job: _Job, answer: object, error: BaseException | None) -> None:
+    def _on_ended(self, job: _Job, answer: object, failure: _Failure | None) -> None:
         self._alive.discard(job)
         if self._current.get(job.kind) is not job:
-            if error is None and job.discarded is not None:
+            if failure is None and job.discarded is not None:
                 job.discarded(answer)
             return
         del self._current[job.kind]
         self.ended.emit(job.kind)
-        if error is None:
+        if failure is None:
             job.applied(answer)
-        elif isinstance(error, UserFacingError):
-            if job.failed is not None:
-                job.failed(error)
-            else:
-                self.failed.emit(error.message, error.remedy)
-        elif not isinstance(error, Cancelled):
-            log.error("%s failed", job.title, exc_info=error)
-            self.failed.emit(UNEXPECTED.format(what=job.title.lower(), error=type(error).__name__), "")
+        elif failure.error is not None and job.failed is not None:
+            job.failed(failure.error)
+        elif failure.error is not None:
+            self.failed.emit(failure.error.message, failure.error.remedy)

@@ -137,7 +137,6 @@ def _style_sheet(t: Theme) -> str:
     QToolButton:checked {{ color: {t.accent}; }}
     QPushButton::menu-indicator {{ image: url({_CHEVRON}); width: 12px; height: 12px;
         subcontrol-position: right center; right: 6px; }}
-    QPushButton[role="choose"] {{ padding-left: 16px; }}
     QComboBox::drop-down {{ border: none; width: 20px; }}
     QComboBox::down-arrow {{ image: url({_CHEVRON}); width: 12px; height: 12px; }}
     QComboBox QAbstractItemView {{ background: {t.raised}; border: 1px solid {t.line};

@@ -248,7 +248,8 @@ class ControlPanel(QWidget):
     def _show_speech(self) -> None:
         speech = self._authoring.document.speech
         path = None if speech is None else speech.audio.path
-        self.speech.setText(texts.CHOOSE_SPEECH if path is None else Path(path).name)
+        # the style leaves a button with a menu no padding
+        self.speech.setText("  " + (texts.CHOOSE_SPEECH if path is None else Path(path).name))
         facts = ""
         if speech is not None:
             facts = texts.SPEECH_FACTS.format(

@@ -145,7 +145,7 @@ def paint_emotions(
             if height > 0:
                 bottom -= height
                 painter.fillRect(QRectF(x, bottom, min(_MIX_COLUMN_PX, right - x), height),
-                                 colour(theme().emotion[EMOTIONS[e]], 0.85))  # fmt: skip
+                                 colour(theme().emotion[EMOTIONS[e]], 0.7))  # fmt: skip
 
 
 def paint_playhead(painter: QPainter, area: QRectF, x: float) -> None:

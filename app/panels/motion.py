@@ -92,7 +92,7 @@ class MotionPane(Pane):
         elif jobs.is_running("search"):
             text = texts.MOTION_WAITING
         elif authoring.document.database is None:
-            text = texts.ISOMAP_EMPTY
+            text = texts.MOTION_NO_DATABASE
         else:
             text = texts.MOTION_EMPTY_READY if authoring.can_synthesise else texts.MOTION_EMPTY
         self.show_empty(text)
