@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 LID_THICKNESS_MM = 0.7
-OVERLAP_MM = 0.4  # how far the upper lid comes down over the lower one, so that no slit stays
+OVERLAP_MM = 0.2  # how far the upper lid comes down over the lower one, so that no slit stays
 LEAST, MOST = 0.6, 2.0
 CORNER = 0.15  # of the width of the eye
 

@@ -16,7 +16,7 @@ from core.motion.marker_set import MarkerSet
 # A lid that came this far counts as shut: PCA and the mean over a neighbourhood keep the last tenth back.
 SHUT_AT = 0.88
 WIDEST = -0.35
-CLEARANCE_MM = 0.35
+CLEARANCE_MM = 1.0
 GAZE_SHARE = 0.011  # how much of a blink one degree of looking down takes
 
 
@@ -27,9 +27,10 @@ class Lid:
     vertices : int; of the skin, lashes after them; blink : float32, shape (n, 3), mm, the face's blink there
     share : float32, 0..1; 1 on the lid, falling to 0 where the markers rule alone
     marker : the vertex under the lid's marker, and blink_there how it moves in a blink
-    under : int; vertices of the lower lid's rim
+    under : int; vertices of the lower lid's rim; lower : int; of the lower lid
     lashes, roots : int, same shape; lash vertices and the skin they are rooted at
     centre, radius : of the eyeball, mm
+    rise : how far the blink lifts the lower lid's rim, mm
     """
 
     vertices: np.ndarray
@@ -38,10 +39,12 @@ class Lid:
     marker: int
     blink_there: np.ndarray
     under: np.ndarray
+    lower: np.ndarray
     lashes: np.ndarray
     roots: np.ndarray
     centre: np.ndarray
     radius: float
+    rise: float
 
 
 @dataclass(frozen=True)
@@ -81,17 +84,21 @@ class Eyelids:
         for lid, closure in zip(self.lids, self.closures(moved)):
             if pitch_deg:
                 closure += (1.0 - max(closure, 0.0)) * np.clip(-GAZE_SHARE * pitch_deg, -0.25, 0.35)
-            lower = moved[lid.under].mean(axis=0) if len(lid.under) else np.zeros(3, np.float32)
-            wanted = closure * lid.blink + max(closure, 0.0) * lower * [0.0, 1.0, 0.3]
-            at = moved[lid.vertices]
-            at += lid.share[:, None] * (wanted.astype(np.float32) - at)
-            moved[lid.vertices] = at + lid.share[:, None] * self._off_ball(lid, at)
+            shut = max(closure, 0.0)
+            # the upper lid's marker must not drag the lower lid down
+            moved[lid.lower, 1] -= shut * np.minimum(moved[lid.lower, 1], 0.0)
+            rise = moved[lid.under, 1].mean() if len(lid.under) else 0.0
+            wanted = closure * lid.blink
+            wanted[:, 1] += shut * shut * (rise - lid.rise)
+            moved[lid.vertices] += lid.share[:, None] * (wanted.astype(np.float32) - moved[lid.vertices])
+            for vertices in (lid.vertices, lid.lower):
+                moved[vertices] += self._off_ball(lid, vertices, moved[vertices])
             if len(lid.lashes):
                 moved[lid.lashes] = self._lashes(lid, moved)
 
-    def _off_ball(self, lid: Lid, moved: np.ndarray) -> np.ndarray:
+    def _off_ball(self, lid: Lid, vertices: np.ndarray, moved: np.ndarray) -> np.ndarray:
         """Return the way out for lid skin that would sink into the eyeball more than at rest."""
-        rest = self.rest[lid.vertices] - lid.centre
+        rest = self.rest[vertices] - lid.centre
         offset = rest + moved
         reach = np.maximum(np.sqrt(np.einsum("ij,ij->i", offset, offset)), 1e-6)
         wanted = np.minimum(np.sqrt(np.einsum("ij,ij->i", rest, rest)), lid.radius + CLEARANCE_MM)
@@ -123,12 +130,23 @@ def _lid(face: Face, side: str, blink: np.ndarray, marker: int, ball: np.ndarray
     centre[2] = high[2] - radius
     at = face.positions[skin]
     reach = np.linalg.norm(at - centre, axis=1)
+    low_lid = (reach < radius + 5.0) & (at[:, 1] < centre[1] + 0.1 * radius) & (at[:, 2] > centre[2]) & ~(share > 0.5)
     middle = np.abs(at[:, 0] - face.positions[marker, 0]) < 0.35 * radius
-    rim = middle & (reach < radius + 2.5) & (at[:, 1] < centre[1]) & (at[:, 2] > centre[2]) & ~(share > 0.5)
-    under = skin[rim]
-    if len(under):
-        under = under[np.argsort(-face.positions[under, 1])[:4]]
+    under = skin[low_lid & middle]
+    under = under[np.argsort(-face.positions[under, 1])[:4]]
     lashes = face.vertices_of(f"lashes_upper_{side}")
     lashes = lashes[follows[lashes] >= 0]
-    return Lid(skin[chosen], blink[skin[chosen]], share[chosen].astype(np.float32), marker, blink[marker], under,
-               lashes, follows[lashes], centre.astype(np.float32), radius)  # fmt: skip
+    return Lid(
+        vertices=skin[chosen],
+        blink=blink[skin[chosen]],
+        share=share[chosen].astype(np.float32),
+        marker=marker,
+        blink_there=blink[marker],
+        under=under,
+        lower=skin[low_lid],
+        lashes=lashes,
+        roots=follows[lashes],
+        centre=centre.astype(np.float32),
+        radius=radius,
+        rise=float(blink[under, 1].mean()) if len(under) else 0.0,
+    )

@@ -8,7 +8,7 @@ from core.face.face import PARTS
 
 # The edge of the upper incisors lies below the line where lips meet (at rest women show 2 to 4 mm of them under a
 # parted upper lip) and the lower ones bite behind them.
-UPPER_EDGE_BELOW_LIPS_MM = 2.2
+UPPER_EDGE_BELOW_LIPS_MM = 1.7
 OVERBITE_MM = 1.6
 UPPER_BEHIND_LIPS_MM = 7.5
 OVERJET_MM = 1.8

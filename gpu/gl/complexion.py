@@ -50,7 +50,7 @@ def rest_places(face: Face) -> np.ndarray:
                 tip = np.clip((from_root - low) / max(high - low, 1e-6), 0.0, 1.0)
                 upper = lid == "upper"
                 places[lashes] = np.column_stack(
-                    [outwards, tip if upper else 0.35 + 0.65 * tip, np.full(len(tip), 0.9 if upper else 0.45)]
+                    [outwards, tip if upper else 0.35 + 0.65 * tip, np.full(len(tip), 0.85 if upper else 0.28)]
                 )
     return places
 

@@ -10,11 +10,12 @@ import numpy as np
 from core.face.face import Face
 from gpu.gl import complexion
 from gpu.gl.camera import Camera
-from gpu.gl.complexion import LASHES, LOWER_TEETH, SKIN, SOCKET, TONGUE, UPPER_TEETH
+from gpu.gl.complexion import LOWER_TEETH, SKIN, SOCKET, TONGUE, UPPER_TEETH
 from gpu.gl.markers import MarkerCloud
 from gpu.gl.normals import VertexNormals
 from gpu.gl.occlusion import openness
 from gpu.gl.program import compile_program
+from gpu.gl.surfaces import FaceSurfaces, kind_of_triangles
 
 # width of the texture that holds one byte a triangle
 _EDGE_ROW = 2048
@@ -38,7 +39,6 @@ class FaceRenderer:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
-        self._shaded = compile_program(ctx, "glsl/face.vert", "glsl/face.frag")
         self._cover = compile_program(ctx, "glsl/face.vert", "glsl/cover.frag")
         self._wire = compile_program(ctx, "glsl/face.vert", "glsl/wire.frag", "glsl/wire.geom")
         self._backdrop = compile_program(ctx, "glsl/background.vert", "glsl/background.frag")
@@ -60,10 +60,9 @@ class FaceRenderer:
         rest = np.ascontiguousarray(face.positions, np.float32)
         material = complexion.materials(face)
         triangles = _facing_out(np.asarray(face.triangles, np.int32), rest)
-        # lashes let light through, so they are drawn after all that lies behind them
-        is_lash = material[triangles[:, 0]] == LASHES
-        triangles = np.ascontiguousarray(triangles[np.argsort(is_lash, kind="stable")])
-        self._n_lash_corners = 3 * int(is_lash.sum())
+        kind = kind_of_triangles(face, triangles)
+        order = np.argsort(kind, kind="stable")
+        triangles = np.ascontiguousarray(triangles[order])
         self._normals = VertexNormals(triangles, rest)
         normals = self._normals(rest)
         surface = np.empty((len(rest), 4), np.float32)
@@ -90,17 +89,16 @@ class FaceRenderer:
             (hairs, "2f", "in_hair"),
             (uvs, "2f", "in_uv"),
         ]
-        self._shaded_array = ctx.vertex_array(self._shaded, inputs, indices, skip_errors=True)
+        self._surfaces = FaceSurfaces(ctx, face, inputs, indices, kind[order])
         self._cover_array = ctx.vertex_array(self._cover, inputs, indices, skip_errors=True)
         self._wire_array = ctx.vertex_array(self._wire, inputs, indices, skip_errors=True)
         hidden = np.zeros((-(-max(len(triangles), 1) // _EDGE_ROW), _EDGE_ROW), np.uint8)
         hidden.ravel()[: len(triangles)] = complexion.quad_diagonals(triangles, rest)
         self._hidden_edges = ctx.texture((_EDGE_ROW, len(hidden)), 1, hidden.tobytes(), dtype="u1", alignment=1)
-        self._mesh = [self._shaded_array, self._cover_array, self._wire_array, self._positions, self._normal_buffer]
+        self._mesh = [self._surfaces, self._cover_array, self._wire_array, self._positions, self._normal_buffer]
         self._mesh += [places, surfaces, hairs, uvs, indices, self._hidden_edges]
 
         self._face = face
-        self._paint(face)
         self.set_positions(rest)
 
     @property
@@ -181,56 +179,34 @@ class FaceRenderer:
         self._free_mesh()
         self.markers.release()
         self.set_texture(None)
-        for thing in (self._backdrop_array, self._backdrop, self._shaded, self._cover, self._wire, self._grain):
+        for thing in (self._backdrop_array, self._backdrop, self._cover, self._wire, self._grain):
             thing.release()
 
     def _draw_mesh(self, view: np.ndarray, projection: np.ndarray, size_px: tuple[int, int], style: Style) -> None:
         ctx = self._ctx
         ctx.enable_only(moderngl.DEPTH_TEST)
-        programs = [self._wire] if style is Style.WIREFRAME else [self._cover, self._shaded]
-        for program in programs:
-            program["view"].write(np.ascontiguousarray(view.T, np.float32).tobytes())
-            program["projection"].write(np.ascontiguousarray(projection.T, np.float32).tobytes())
-        programs[-1]["viewport_px"].value = size_px
+        view, projection = (np.ascontiguousarray(matrix.T, np.float32) for matrix in (view, projection))
+        program = self._wire if style is Style.WIREFRAME else self._cover
+        program["view"].write(view.tobytes())
+        program["projection"].write(projection.tobytes())
         if style is Style.WIREFRAME:
+            program["viewport_px"].value = size_px
             self._hidden_edges.use(0)
             self._wire_array.render()
             return
-        self._shaded["texture_mode"].value = self._texture_mode(style)
         self._grain.use(0)
         if self._picture is not None:
             self._picture.use(1)
-        n_solid = 3 * len(self._face.triangles) - self._n_lash_corners
-        self._cover_array.render(vertices=n_solid)
+        # depth first, so that each pixel is shaded once
+        self._cover_array.render(vertices=self._surfaces.n_solid_corners)
         ctx.depth_func = "<="
-        self._shaded_array.render(vertices=n_solid)
-        if self._n_lash_corners:
-            ctx.enable(moderngl.BLEND)
-            ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ZERO, moderngl.ONE
-            self._shaded_array.render(vertices=self._n_lash_corners, first=n_solid)
+        self._surfaces.draw(self._texture_mode(style), view, projection, size_px)
         ctx.depth_func = "<"
 
     def _texture_mode(self, style: Style) -> int:
         if style is not Style.TEXTURED:
             return 0
         return 1 if self._picture is None or self._face.uv is None else 2
-
-    def _paint(self, face: Face) -> None:
-        """Give the shader what the face's look and landmarks say."""
-        look, program = face.look, self._shaded
-        arcs, width_mm = complexion.brow_arcs(face)
-        arch, edges = complexion.tooth_arch(face)
-        program["grain"].value, program["picture"].value = 0, 1
-        program["brows"].write(arcs.tobytes())
-        program["brow_width_mm"].value = width_mm
-        program["brow_weight"].value = look.brow_weight
-        for name in ("skin", "hair", "iris"):
-            program[f"{name}_colour"].value = getattr(look, name)
-        program["lip_colour"].value, program["brow_colour"].value = look.lips, look.brows
-        program["marks"].value = look.lip_tint, look.blush, look.freckles, look.stubble
-        program["age_and_lash"].value = look.age, look.lash_weight
-        program["arch"].value, program["edges"].value = arch, edges
-        program["bust_mm"].value = complexion.bust_ball(face)
 
     def _openness(
         self, rest: np.ndarray, normals: np.ndarray, triangles: np.ndarray, material: np.ndarray

@@ -22,10 +22,10 @@ float brow_cover(vec3 rest) {
     float along = (rest.x - inner.x) * sign(outer.x - inner.x) - lean * (rest.y - middle);
     vec4 fine = texture(grain, vec3(along * 0.135, v * 0.030, 0.31));
     vec4 coarse = texture(grain, vec3(along * 0.040, v * 0.05, 0.67));
-    float hairs = smoothstep(0.25, 0.70, fine.r * 0.7 + coarse.g * 0.3);
+    float hairs = smoothstep(0.20, 0.80, fine.r * 0.75 + coarse.g * 0.25);
     float rim = 1.0 - smoothstep(0.30, 1.05 + 0.9 * (fine.g - 0.45), abs(v));
     float ends = smoothstep(-0.08, 0.20, u + 0.16 * (fine.b - 0.5)) * (1.0 - smoothstep(0.72, 1.06, u));
-    return clamp(rim * ends * (0.42 + 0.60 * hairs) * mix(0.75, 1.0, brow_weight), 0.0, 0.92);
+    return clamp(rim * ends * (0.50 + 0.48 * hairs) * mix(0.75, 1.0, brow_weight), 0.0, 0.92);
 }
 
 // How bright the strands are here, about 1; they run from the hairline back over the crown.
