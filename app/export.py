@@ -10,9 +10,13 @@ from pathlib import Path
 from app.pictures import STYLES, FaceRig, frames
 from core.errors import UserFacingError
 from core.media.audio import Audio
+from core.media.picture import read_picture
 from core.media.video import FRAME_RATES, n_video_frames, write_video
 from core.progress import SILENT, Progress
+from core.speech.loudness import levels_db
+from core.speech.transcript import Transcript
 from core.synthesis.marker_motion import MarkerMotion
+from core.synthesis.pose_tracks import PoseTracks
 
 VIDEO_SUFFIXES = (".avi", ".mp4")
 MARKER_SUFFIXES = (".csv", ".c3d")
@@ -24,6 +28,8 @@ class VideoSettings:
 
     fps : one of `FRAME_RATES`; width, height : pixels; style : one of `app.pictures.STYLES`
     start_frame : number of the first frame, written as timecode
+    head, gaze : whether head and eyes move by tracks of their own, made from the speech
+    texture : a picture for the face's texture coordinates (style ``face``), or None
     """
 
     fps: Fraction = FRAME_RATES["30"]
@@ -31,6 +37,9 @@ class VideoSettings:
     height: int = 480
     style: str = "face"
     start_frame: int = 0
+    head: bool = True
+    gaze: bool = True
+    texture: Path | None = None
 
     def __post_init__(self) -> None:
         if self.style not in STYLES:
@@ -71,13 +80,25 @@ def export(
     path: Path,
     settings: VideoSettings,
     progress: Progress = SILENT,
+    transcript: Transcript | None = None,
 ) -> None:
-    """Write ``motion`` with its sound to ``path``; the suffix says as what. Sampled at the video's frame rate."""
+    """Write ``motion`` with its sound to ``path``; the suffix says as what. Sampled at the video's frame rate.
+
+    transcript : what is said; in a video it moves the tongue and, if ``settings`` ask for it, head and gaze
+    """
     n_frames = n_video_frames(audio.duration_s, settings.fps)
     sampled = motion.at_rate(settings.fps, n_frames)
     suffix = path.suffix.lower()
     if suffix in VIDEO_SUFFIXES:
-        pictures = frames(sampled, rig, settings.style, settings.width, settings.height)
+        tracks = None
+        if transcript is not None:
+            loudness_db = levels_db(audio.samples, audio.rate_hz)
+            tracks = PoseTracks.of(
+                transcript, float(settings.fps), n_frames, loudness_db, head=settings.head, gaze=settings.gaze
+            )
+        texture = None if settings.texture is None else read_picture(settings.texture)
+        size = (settings.width, settings.height)
+        pictures = frames(sampled, rig, settings.style, *size, tracks=tracks, texture=texture)
         write_video(path, pictures, n_frames, settings.fps, audio, progress, settings.start_frame)
     else:
         from core.motion.motion_files import write_c3d, write_markers_csv

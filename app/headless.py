@@ -53,7 +53,7 @@ def write_demo(out: Path, progress: Progress = SILENT) -> dict[str, object]:
         painted = [EmotionModifier(0.0, transcript.duration_s, spoken.emotion)]
         answer = engine.synthesise(SpeechInput(transcript, painted), stage.part(0.0, 0.2))
         path = out / f"demo-{spoken.emotion}.avi"
-        export(answer.motion, load_audio(spoken.audio), rig, path, settings, stage.part(0.2, 1.0))
+        export(answer.motion, load_audio(spoken.audio), rig, path, settings, stage.part(0.2, 1.0), transcript)
         outputs.append(str(path))
     progress.step(0.88, "drawing the window")
     picture = out / "workstation.png"
