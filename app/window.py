@@ -45,7 +45,7 @@ class MainWindow(QMainWindow):
         self.motion = MotionPane(authoring)
         self.video = VideoPane(authoring)
         self.isomap = IsomapPane(authoring)
-        self.preview = PreviewPane(authoring)
+        self.preview = PreviewPane(authoring, self.motion.face_view)
         self.timeline = Timeline(authoring)
         self.message = MessageBar()
         self.status = StatusLine(authoring.jobs)

@@ -28,8 +28,10 @@ _STEP_ANGLE = 120.0  # eighths of a degree in one notch of a wheel
 class FaceView(QOpenGLWidget):
     """Shows one pose of a marker set, on a face or bare. GL objects live in the widget's own context."""
 
-    def __init__(self) -> None:
+    def __init__(self, sibling: FaceView | None = None) -> None:
+        """Make a view; a ``sibling`` that shows the same face lends what it worked out about it."""
         super().__init__()
+        self._sibling = sibling
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
         self.setStatusTip(texts.ORBIT_TIP)
         self._renderer: FaceRenderer | None = None
@@ -74,6 +76,11 @@ class FaceView(QOpenGLWidget):
         """Whether a face is drawn, not markers."""
         return self._rig is not None and self._style is not Style.MARKERS
 
+    def light_on(self, rig: FaceRig) -> np.ndarray | None:
+        """Return the light on the face of ``rig``, if it has been worked out here."""
+        ready = self._renderer is not None and self._rig is rig and not self._stale["face"]
+        return self._renderer.light if ready else None
+
     # Camera
 
     def frame_view(self) -> None:
@@ -112,7 +119,8 @@ class FaceView(QOpenGLWidget):
 
     def _upload(self, renderer: FaceRenderer) -> None:
         if self._stale["face"] and self._rig is not None:
-            renderer.set_face(self._rig.face)
+            light = None if self._sibling is None else self._sibling.light_on(self._rig)
+            renderer.set_face(self._rig.face, light=light)
             self._stale["face"] = False
         if self._stale["markers"] and self._markers is not None:
             colours = np.tile(_MARKER_COLOUR, (len(self._markers), 1))
