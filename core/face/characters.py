@@ -81,7 +81,7 @@ CHARACTERS: dict[str, Character] = {
         lips_closed=0.35,
         look=Look(
             skin=(0.530, 0.262, 0.180), lips=(0.380, 0.130, 0.110), hair=(0.500, 0.490, 0.475),
-            brows=(0.300, 0.285, 0.265), iris=(0.095, 0.150, 0.215), hair_mm=3.0, brow_weight=1.8, lash_weight=0.45,
+            brows=(0.165, 0.150, 0.135), iris=(0.095, 0.150, 0.215), hair_mm=3.0, brow_weight=1.5, lash_weight=0.45,
             lip_tint=0.45, stubble=0.30, blush=0.65, age=0.9,
         ),
     ),

@@ -124,13 +124,18 @@ def _lid(face: Face, side: str, blink: np.ndarray, marker: int, ball: np.ndarray
     # the lid proper moves by a quarter of the most or more; above it the fold fades out
     t = np.clip((falls / most - 0.04) / 0.16, 0.0, 1.0)
     share = t * t * (3.0 - 2.0 * t)
-    chosen = share > 0
     low, high = ball.min(axis=0), ball.max(axis=0)
     centre, radius = (low + high) / 2, float(high[0] - low[0]) / 2
     centre[2] = high[2] - radius
     at = face.positions[skin]
     reach = np.linalg.norm(at - centre, axis=1)
-    low_lid = (reach < radius + 5.0) & (at[:, 1] < centre[1] + 0.1 * radius) & (at[:, 2] > centre[2]) & ~(share > 0.5)
+    # the corners of the eye hardly move in a blink, and must not be dragged along by the lid's marker
+    around = np.clip((radius + 11.0 - reach) / 5.0, 0.0, 1.0) * np.clip((at[:, 1] - centre[1]) / 4.0 + 1.75, 0.0, 1.0)
+    share = np.maximum(share, around * (at[:, 2] > centre[2]))
+    chosen = share > 0
+    low_lid = (
+        (reach < radius + 5.0) & (at[:, 1] < centre[1] + 0.1 * radius) & (at[:, 2] > centre[2]) & ~(falls > 0.1 * most)
+    )
     middle = np.abs(at[:, 0] - face.positions[marker, 0]) < 0.35 * radius
     under = skin[low_lid & middle]
     under = under[np.argsort(-face.positions[under, 1])[:4]]

@@ -101,11 +101,11 @@ class TongueShape:
             return None
         at = face.positions[vertices].astype(float)
         u = (at[:, 2] - at[:, 2].min()) / max(float(np.ptp(at[:, 2])), 1e-6)
-        tip = np.clip((u - 0.45) / 0.55, 0.0, 1.0)
+        tip = np.clip((u - 0.25) / 0.75, 0.0, 1.0)
         incisors = face.positions[teeth].astype(float)
         front = incisors[incisors[:, 2] > incisors[:, 2].max() - 0.2 * np.ptp(incisors[:, 2])]
         size = float(np.ptp(incisors[:, 0])) / 60.0
-        ridge = np.array([0.0, front[:, 1].min() + 3.0 * size, front[:, 2].max() - 4.5 * size])
+        ridge = np.array([0.0, front[:, 1].min() + 0.8 * size, front[:, 2].max() - 3.6 * size])
         return cls(
             vertices,
             (tip * tip).astype(np.float32),
@@ -128,7 +128,7 @@ class TongueShape:
         goal = self.ridge_mm.copy()
         out = float(np.clip(advance, 0.0, 1.0))
         # between the teeth the tip passes under the edge of the upper ones
-        goal[1] -= 4.2 / 7.5 * self.out_mm * out
+        goal[1] -= 2.4 / 7.5 * self.out_mm * out
         up = (goal[1] - now[1]) * raised
         ahead = (goal[2] - now[2]) * raised + self.out_mm * out + 5.0 / 7.5 * self.out_mm * min(advance, 0.0)
         moved[self.vertices, 1] += self.tip * np.float32(up) + self.back * np.float32(self.back_mm * back)

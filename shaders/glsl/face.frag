@@ -37,7 +37,7 @@ out vec4 colour;
 const vec3 SCLERA = vec3(0.500, 0.455, 0.420);
 const vec3 TOOTH = vec3(0.545, 0.475, 0.375);
 const vec3 GUM = vec3(0.330, 0.090, 0.080);
-const vec3 TONGUE = vec3(0.360, 0.105, 0.095);
+const vec3 TONGUE = vec3(0.420, 0.130, 0.115);
 const vec3 SOCKET = vec3(0.170, 0.036, 0.030);
 const vec3 LASH = vec3(0.012, 0.008, 0.007);
 
@@ -152,7 +152,7 @@ void main() {
     lit = tooth(to_eye);
 #elif PART == 3
     float groove = 1.0 - 0.35 * exp(-rest.x * rest.x * 0.35);
-    lit = TONGUE * groove * diffuse_light(n, vec3(0.35, 0.2, 0.15), 0.8) * open;
+    lit = TONGUE * groove * diffuse_light(n, vec3(0.7, 0.5, 0.45), 0.9) * open;
     lit += highlights(n, to_eye, 30.0, 0.035) * open * 0.7;
 #elif PART == 4
     // rest: 0..1 from the inner to the outer corner, root to tip, and strength; single hairs that lean outwards
@@ -161,7 +161,7 @@ void main() {
     float hairs = 1.0 - abs(fract(along) * 2.0 - 1.0);
     float thin = mix(0.35, 0.95, rest.y);
     float line = smoothstep(thin - 0.25, thin + 0.30, hairs) * (0.55 + 0.9 * odd.g);
-    float ends = smoothstep(0.05, 0.30, rest.x) * (1.0 - smoothstep(0.74, 0.90, rest.x));
+    float ends = smoothstep(0.05, 0.30, rest.x) * (1.0 - smoothstep(0.68, 0.84, rest.x));
     cover = clamp(line * ends * (1.0 - smoothstep(0.45, 1.0, rest.y)) * rest.z * age_and_lash.y, 0.0, 1.0);
     lit = LASH;
 #else
