@@ -1,0 +1,117 @@
+"""A small motion database and a speech file, made on the spot, and a window that knows nobody's settings."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import soundfile
+
+from core.motion.build import BuildSettings, build_database
+from core.motion.corpus import Corpus
+from core.motion.recording import Recording
+from core.speech.emotion import EMOTIONS
+from core.speech.transcript import PhonemeUtterance, Transcript, WordUtterance
+
+PHONES = ("m", "aa", "iy", "w", "ah", "b")
+RATE_HZ = 60.0
+SPOKEN = ("m", "aa", "b", "iy", "w", "ah")
+PHONE_S = 0.15
+
+
+def _markers(n: int = 14) -> tuple[tuple[str, ...], np.ndarray]:
+    angle = np.linspace(0, 2 * np.pi, n - 2, endpoint=False)
+    ring = np.column_stack([50 * np.cos(angle), 60 * np.sin(angle), 20 * np.cos(2 * angle)])
+    lips = np.array([[0.0, -20.0, 30.0], [0.0, -28.0, 30.0]])
+    return (*(f"ring{i}" for i in range(n - 2)), "lip_up", "lip_low"), np.vstack([ring, lips])
+
+
+def _recording(rng: np.random.Generator, s: int) -> Recording:
+    names, rest = _markers()
+    phones = [PHONES[i] for i in rng.permutation(len(PHONES))] * 2
+    utterances, at_s = [PhonemeUtterance("pau", 0.0, 0.1)], 0.1
+    for phone in phones:
+        utterances.append(PhonemeUtterance(phone, at_s, at_s + 0.1))
+        at_s += 0.1
+    utterances.append(PhonemeUtterance("pau", at_s, at_s + 0.1))
+    times_s = np.arange(round((at_s + 0.1) * RATE_HZ)) / RATE_HZ
+    positions = np.repeat(rest[None], len(times_s), axis=0)
+    opening = 4 + 3 * np.sin(2 * np.pi * 3 * times_s + s) + s % 4
+    positions[:, -1, 1] -= opening
+    positions[:, :-2] += 0.3 * rng.normal(size=(len(times_s), len(rest) - 2, 3)).cumsum(axis=0) * 0.1
+    transcript = Transcript.covering(utterances, [WordUtterance("word", 0.1, at_s)], at_s + 0.1)
+    emotion = EMOTIONS[s % 4]
+    return Recording(f"s{s}", emotion, positions.astype(np.float32), names, RATE_HZ, transcript, f"sentence {s}")
+
+
+@pytest.fixture(scope="session")
+def database_path(tmp_path_factory):
+    rng = np.random.default_rng(7)
+    names, rest = _markers()
+    groups = {"upper_lip": ("lip_up",), "lower_lip": ("lip_low",), "lips": ("lip_up", "lip_low")}
+    corpus = Corpus("tiny", [_recording(rng, s) for s in range(8)], names, groups, {}, rest, synthetic=True)
+    path = tmp_path_factory.mktemp("database") / "tiny.h5"
+    build_database(corpus, path, BuildSettings(rate_hz=60.0))
+    return path
+
+
+@pytest.fixture(scope="session")
+def speech_path(tmp_path_factory):
+    """A hum with its phones beside it."""
+    folder = tmp_path_factory.mktemp("speech")
+    duration_s = 0.2 + PHONE_S * len(SPOKEN)
+    times_s = np.arange(round(duration_s * 16_000)) / 16_000
+    soundfile.write(folder / "hum.wav", 0.3 * np.sin(2 * np.pi * 140 * times_s), 16_000)
+    lines, at_s = ["0.0 0.1 pau"], 0.1
+    for phone in SPOKEN:
+        lines.append(f"{at_s:.3f} {at_s + PHONE_S:.3f} {phone}")
+        at_s += PHONE_S
+    lines.append(f"{at_s:.3f} {duration_s:.3f} pau")
+    (folder / "hum.lab").write_text("\n".join(lines) + "\n")
+    return folder / "hum.wav"
+
+
+@pytest.fixture
+def settings_folder(tmp_path, monkeypatch):
+    folder = tmp_path / "config"
+    monkeypatch.setenv("EFASE_CONFIG_DIR", str(folder))
+    monkeypatch.setenv("EFASE_CACHE_DIR", str(tmp_path / "cache"))
+    return folder
+
+
+@pytest.fixture
+def open_window(qtbot, qapp, settings_folder):
+    """Return a function that shows a main window without a demo and without a face; all are closed at the end."""
+    from app.authoring import Authoring
+    from app.theme import apply_theme
+    from app.window import MainWindow
+
+    apply_theme(qapp)
+    opened = []
+
+    def make() -> MainWindow:
+        window = MainWindow(Authoring(face=None))
+        opened.append(window)
+        with qtbot.waitExposed(window):
+            window.show()
+        with qtbot.waitActive(window):  # shortcuts belong to the active window; no window manager makes it so here
+            window.activateWindow()
+        return window
+
+    yield make
+    for window in opened:
+        window.close()
+        window.deleteLater()
+    qapp.processEvents()
+
+
+@pytest.fixture
+def choose(monkeypatch):
+    """Return a function that makes the next file dialogs answer with these paths."""
+    from PySide6.QtWidgets import QFileDialog
+
+    def answer(*paths) -> None:
+        queue = [str(path) for path in paths]
+        monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (queue.pop(0), ""))
+        monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (queue.pop(0), ""))
+
+    return answer
