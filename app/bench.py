@@ -110,7 +110,8 @@ def utterance(n_slots: int) -> SearchRequest:
     while len(slots) < n_slots:
         for spoken in demo_sentences():
             emotion = EMOTION_INDEX[spoken.emotion]
-            slots += [(PHONEME_INDEX[phone], emotion) for phone in transcript_of(spoken).phones]
+            said = [(PHONEME_INDEX[phone], emotion) for phone in transcript_of(spoken).phones]
+            slots += said[1:] if slots else said  # a sentence ends and the next begins with one silence
     phonemes, emotions = np.array(slots[:n_slots]).T
     return SearchRequest(phonemes, np.eye(len(EMOTIONS))[emotions])
 

@@ -31,6 +31,8 @@ from core.search.transitions import TransitionCosts
 _ROUNDING = 1e-12  # relative; sums of a few hundred float64 costs differ by less when their order changes
 FIRST_REACH = 2.1  # in PNT above the least local cost: the phone itself in any emotion, under the default weights
 
+MOST_AT_FIRST = 1000
+
 
 @dataclass(frozen=True)
 class Round:
@@ -91,7 +93,10 @@ def find_path_by_relaxation(
 
 
 def _first_active(local: np.ndarray, pnt: float) -> _Slot:
-    return _slot_with(local, np.flatnonzero(local <= local.min() + FIRST_REACH * pnt))
+    active = np.flatnonzero(local <= local.min() + FIRST_REACH * pnt)
+    if len(active) > MOST_AT_FIRST:  # in a silence every node does; the bounds will tell which others matter
+        active = np.flatnonzero(local <= local.min())
+    return _slot_with(local, active)
 
 
 def _slot_with(local: np.ndarray, active: np.ndarray) -> _Slot:
