@@ -7,34 +7,35 @@ import numpy as np
 LID_THICKNESS_MM = 0.7
 OVERLAP_MM = 0.2  # how far the upper lid comes down over the lower one, so that no slit stays
 LEAST, MOST = 0.5, 2.0
+FEWEST = 8
 MIDDLE = (0.3, 0.8)  # of the width of the eye
 
 
-def fitted_blink(positions: np.ndarray, unit: np.ndarray, loop: np.ndarray, ball: np.ndarray) -> np.ndarray:
+def fitted_blink(positions: np.ndarray, unit: np.ndarray, rim: np.ndarray, ball: np.ndarray) -> np.ndarray:
     """Return the blink ``unit``, stretched until the upper rim meets the lower one.
 
-    positions, unit : shape (V, 3), mm; loop : int, the rim of the lids, in order; ball : shape (B, 3), the eyeball
+    positions, unit : shape (V, 3), mm; rim : int, the vertices of the opening of the eye; ball : shape (B, 3), the
+    eyeball. A face whose eye has no rim to go by keeps its unit
     """
-    rim = positions[loop]
-    corners = np.array([rim[:, 0].argmin(), rim[:, 0].argmax()])
-    upper, lower = _two_sides(loop, corners, positions)
+    at = positions[rim]
+    if len(rim) < FEWEST:
+        return unit
+    first, last = at[at[:, 0].argmin()], at[at[:, 0].argmax()]
+    across = (at[:, 0] - first[0]) / max(last[0] - first[0], 1e-6)
+    above = at[:, 1] > first[1] + across * (last[1] - first[1])
+    upper, lower = rim[above], rim[~above]
     closed = positions + unit
     x = closed[lower][np.argsort(closed[lower][:, 0])]
     wanted = np.interp(closed[upper][:, 0], x[:, 0], x[:, 1]) - OVERLAP_MM - positions[upper][:, 1]
     # the middle of the eye decides for all of it: near the corners, where nothing moves, a ratio says nothing
-    across = (positions[upper][:, 0] - rim[:, 0].min()) / np.ptp(rim[:, 0])
-    middle = (across > MIDDLE[0]) & (across < MIDDLE[1])
+    middle = (across[above] > MIDDLE[0]) & (across[above] < MIDDLE[1])
+    if not middle.any():
+        return unit
     stretch = float(np.clip((wanted[middle] / np.minimum(unit[upper, 1], -0.3)[middle]).max(), LEAST, MOST))
     fitted = unit.copy()
     falling = unit[:, 1] < 0
     fitted[falling, 1:] *= stretch
     return fitted + _out_of_ball(positions, fitted, ball)
-
-
-def _two_sides(loop: np.ndarray, corners: np.ndarray, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    first, last = sorted(corners.tolist())
-    one, other = loop[first + 1 : last], np.concatenate([loop[last + 1 :], loop[:first]])
-    return (one, other) if positions[one, 1].mean() > positions[other, 1].mean() else (other, one)
 
 
 def _out_of_ball(positions: np.ndarray, moved: np.ndarray, ball: np.ndarray) -> np.ndarray:

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.face.attachments import attach
-from core.face.face import Face
+from core.face.blink_fitting import fitted_blink
+from core.face.face import PARTS, Face
 from core.motion.marker_set import MarkerSet
 
 # A lid that came this far counts as shut: PCA and the mean over a neighbourhood keep the last tenth back.
@@ -24,9 +25,10 @@ GAZE_SHARE = 0.011  # how much of a blink one degree of looking down takes
 class Lid:
     """One upper lid.
 
-    vertices : int; of the skin, lashes after them; blink : float32, shape (n, 3), mm, the face's blink there
+    vertices : int; of the skin, lashes after them; blink : float32, shape (n, 3), mm, the face's
+        blink there, fitted to this face
     share : float32, 0..1; 1 on the lid, falling to 0 where the markers rule alone
-    marker : the vertex under the lid's marker, and blink_there how it moves in a blink
+    marker : the vertex under the lid's marker, and blink_there how the face's unit moves it
     under : int; vertices of the lower lid's rim; lower : int; of the lower lid
     lashes, roots : int, same shape; lash vertices and the skin they are rooted at
     centre, radius : of the eyeball, mm
@@ -117,7 +119,8 @@ class Eyelids:
         return moved[lid.roots] + turned - hair
 
 
-def _lid(face: Face, side: str, blink: np.ndarray, marker: int, ball: np.ndarray, follows: np.ndarray) -> Lid:
+def _lid(face: Face, side: str, unit: np.ndarray, marker: int, ball: np.ndarray, follows: np.ndarray) -> Lid:
+    blink = fitted_blink(face.positions, unit, _opening(face, ball), ball).astype(np.float32)
     skin = face.vertices_of("skin")
     falls = -blink[skin, 1]
     most = max(float(falls.max()), 1e-6)
@@ -146,7 +149,7 @@ def _lid(face: Face, side: str, blink: np.ndarray, marker: int, ball: np.ndarray
         blink=blink[skin[chosen]],
         share=share[chosen].astype(np.float32),
         marker=marker,
-        blink_there=blink[marker],
+        blink_there=unit[marker],
         under=under,
         lower=skin[low_lid],
         lashes=lashes,
@@ -155,3 +158,15 @@ def _lid(face: Face, side: str, blink: np.ndarray, marker: int, ball: np.ndarray
         radius=radius,
         rise=float(blink[under, 1].mean()) if len(under) else 0.0,
     )
+
+
+def _opening(face: Face, ball: np.ndarray) -> np.ndarray:
+    """Return the vertices of the skin's edge around one eyeball, int."""
+    edges = np.sort(
+        np.concatenate([face.triangles[:, [0, 1]], face.triangles[:, [1, 2]], face.triangles[:, [2, 0]]]), 1
+    )
+    unique, uses = np.unique(edges, axis=0, return_counts=True)
+    edge = np.unique(unique[uses == 1])
+    low, high = ball.min(axis=0) - 3.0, ball.max(axis=0) + 3.0
+    at = face.positions[edge]
+    return edge[(face.part[edge] == PARTS.index("skin")) & (at > low).all(axis=1) & (at < high).all(axis=1)]

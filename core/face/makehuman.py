@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 
-from core.face.blink_fitting import fitted_blink
 from core.face.characters import CHARACTERS, DEFAULT, Character
 from core.face.clip import clip_mesh
 from core.face.face import PARTS, Face
@@ -206,25 +205,24 @@ def _cut(
     inside[part != PARTS.index("skin")] = BUST_RADIUS_MM
     hair = np.where(part == PARTS.index("skin"), hairline_distance(first), -99.0)
     names = sorted(units)
-    fitted = {name: _fitted_units(base, positions, part, units) for name, positions in placed.items()}
     columns = [base.uv, lips[:, None], hair[:, None]]
-    for name, positions in placed.items():
-        columns += [positions, *(fitted[name][unit] for unit in names)]
+    columns += [*placed.values(), *(units[unit] for unit in names)]
     triangles, carried, source = clip_mesh(_triangles(quads, first), np.concatenate(columns, axis=1), inside)
     row = {int(vertex): k for k, vertex in enumerate(source) if vertex >= 0}
     clipped_part = np.where(source >= 0, part[source], PARTS.index("skin")).astype(np.uint8)
     carried = carried.astype(np.float32)
+    first_unit = 4 + 3 * len(placed)
+    moved = {unit: carried[:, first_unit + 3 * u :][:, :3].copy() for u, unit in enumerate(names)}
     faces = {}
     for c, name in enumerate(placed):
-        own = carried[:, 4 + c * 3 * (len(names) + 1) :][:, : 3 * (len(names) + 1)]
         faces[name] = Face(
             name=name,
-            positions=own[:, :3].copy(),
+            positions=carried[:, 4 + 3 * c : 7 + 3 * c].copy(),
             triangles=triangles.astype(np.int32),
             part=clipped_part,
             uv=carried[:, :2].copy(),
             landmarks={landmark: row[vertex] for landmark, vertex in LANDMARKS.items()},
-            units={unit: own[:, 3 + 3 * u : 6 + 3 * u].copy() for u, unit in enumerate(names)},
+            units=moved,
             credit=CREDIT,
             look=CHARACTERS[name].look,
             masks={"lips": carried[:, 2].copy(), "hair": carried[:, 3].copy()},
@@ -235,17 +233,6 @@ def _cut(
 def _between_eyes(positions: np.ndarray, part: np.ndarray) -> np.ndarray:
     eyes = [positions[part == PARTS.index(side)].mean(axis=0) for side in ("eye_left", "eye_right")]
     return positions - np.mean(eyes, axis=0)
-
-
-def _fitted_units(
-    base: BaseMesh, positions: np.ndarray, part: np.ndarray, units: dict[str, np.ndarray]
-) -> dict[str, np.ndarray]:
-    fitted = dict(units)
-    for side, loop in (("Left", LID_LOOPS[0]), ("Right", LID_LOOPS[1])):
-        ball = positions[part == PARTS.index(f"eye_{side.lower()}")]
-        name = f"eyeBlink{side}"
-        fitted[name] = fitted_blink(positions, units[name], np.array(base.edge_loop(*loop[:2])), ball)
-    return fitted
 
 
 def _triangles(quads: np.ndarray, positions: np.ndarray) -> np.ndarray:

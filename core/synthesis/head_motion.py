@@ -25,7 +25,8 @@ EASE_S = 0.35
 GAZE_DEG = (3.2, 1.6)
 FIXATION_S = (0.35, 1.5)
 SACCADE_S = 0.035
-AT_VIEWER = 0.62  # how often the eyes rest on whoever looks
+STAYS = 0.35  # how often the eyes, resting on the viewer, do so again
+RETURNS = 0.75  # how often they come back from elsewhere
 
 
 def head_track(
@@ -59,7 +60,8 @@ def gaze_track(transcript: Transcript, rate_hz: float, n_frames: int) -> np.ndar
     while starts[-1] < end_s:
         starts.append(starts[-1] + rng.uniform(*FIXATION_S))
         away = rng.normal(size=2) * GAZE_DEG
-        targets.append(np.zeros(2) if rng.random() < AT_VIEWER else np.clip(away, -8.0, 8.0))
+        at_viewer = rng.random() < (RETURNS if targets[-1].any() else STAYS)
+        targets.append(np.zeros(2) if at_viewer else np.clip(away, -8.0, 8.0))
     time_s = np.arange(n_frames) / rate_hz
     gaze = np.zeros((n_frames, 2))
     for start, before, after in zip(starts[1:], targets, targets[1:]):
