@@ -16,6 +16,9 @@ app = typer.Typer(
     pretty_exceptions_enable=False, rich_markup_mode=None, context_settings={"help_option_names": ["-h", "--help"]},
 )  # fmt: skip
 
+bench = typer.Typer(help="Measure, each figure beside a reference run in the same process.", rich_markup_mode=None)
+app.add_typer(bench, name="bench")
+
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 Database = Annotated[Path | None, typer.Option("--db", help="Motion database; the demo's when absent.")]
 Lexicon = Annotated[Path | None, typer.Option(help="Pronunciations of names and coined words, `word phone phone …`.")]
@@ -139,14 +142,17 @@ def synth(
     emotion: Annotated[str | None, typer.Option(help="neutral, happiness, anger or sadness.")] = None,
     emotions: Annotated[Path | None, typer.Option(help="Text lines `start end emotion [intensity]`.")] = None,
     engine: Annotated[str, typer.Option(help="search")] = "search",
-    face: Annotated[str, typer.Option(help="`default`, or a mesh: OBJ, PLY, glTF.")] = "default",
+    face: Annotated[str, typer.Option(help="default, ben, rosa, otto, pip, or a mesh: OBJ, PLY, glTF.")] = "default",
     markers: Annotated[Path | None, typer.Option(help="CSV `marker,vertex` for a face of your own.")] = None,
-    backend: Annotated[str, typer.Option(help="auto, numpy or opencl.")] = "auto",
+    backend: Annotated[str, typer.Option(help="auto, numpy, opencl or glsl.")] = "auto",
     pin: Annotated[list[str] | None, typer.Option(metavar="SLOT=NODE", help="Tie a motion node to a slot.")] = None,
     fps: Annotated[str, typer.Option(help="24, 25, 29.97, 30 or 60.")] = "30",
     start_frame: Annotated[int, typer.Option(min=0, help="Number of the first frame (timecode).")] = 0,
     size: Annotated[str, typer.Option(help="Picture size.")] = "640x480",
-    style: Annotated[str, typer.Option(help="face, wireframe or markers.")] = "face",
+    style: Annotated[str, typer.Option(help="face, shaded (without texture), wireframe or markers.")] = "face",
+    texture: Annotated[Path | None, typer.Option(help="PNG or JPEG for a mesh with texture coordinates.")] = None,
+    head: Annotated[bool, typer.Option("--head/--no-head", help="Let the head move, subtly.")] = True,
+    gaze: Annotated[bool, typer.Option("--gaze/--no-gaze", help="Let the eyes wander.")] = True,
     lexicon: Lexicon = None,
     strict: Strict = False,
     json: Json = False,
@@ -158,7 +164,8 @@ def synth(
     job = SynthesisJob(
         audio=audio, outputs=tuple(output), text=text, phones=phones, database=db, emotion=emotion, emotions=emotions,
         engine=engine, face=face, marker_file=markers, backend=backend, pins=tuple(pin or ()),
-        video=VideoSettings(frame_rate(fps), *video_size(size), style, start_frame), lexicon=lexicon, strict=strict,
+        video=VideoSettings(frame_rate(fps), *video_size(size), style, start_frame, head, gaze, texture),
+        lexicon=lexicon, strict=strict,
     )  # fmt: skip
     with progress_bar("synth") as progress:
         answer = run(job, progress)
@@ -168,6 +175,29 @@ def synth(
     else:
         for path in answer["outputs"]:
             print(path)
+
+
+@bench.command("search")
+def bench_search(
+    db: Database = None,
+    nodes: Annotated[int | None, typer.Option(min=1, help="Repeat or cut the database to this many nodes.")] = None,
+    phonemes: Annotated[list[int] | None, typer.Option(min=1, help="Lengths; the paper's four when absent.")] = None,
+    backends: Annotated[list[str] | None, typer.Option(help="Which to measure; all when absent.")] = None,
+    repeats: Annotated[int, typer.Option(min=1, help="Times are medians of this many runs.")] = 20,
+    json: Json = False,
+) -> None:
+    """Measure the search: cold, after edits, with prices; beside a reference and the memory's speed."""
+    from app import bench
+
+    database = _open(db)
+    with progress_bar("bench") as progress:
+        answer = bench.bench_search(
+            database, nodes, phonemes or bench.PAPER_LENGTHS, backends or bench.BACKENDS, repeats, progress
+        )
+    if json:
+        print_json(answer)
+    else:
+        print(bench.as_table(answer))
 
 
 def _open(path: Path | None):

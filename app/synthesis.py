@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from app.demo import demo_database
@@ -54,7 +54,8 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
     speech = load_speech(job.audio, job.text, job.phones, job.lexicon, job.strict, progress.part(0.1, 0.25))
     modifiers = emotion_modifiers(job.emotion, job.emotions, speech.audio.duration_s)
     aligned_s = time.perf_counter() - began
-    engine = SearchEngine(database, kernels)
+    # a backend that was asked for by name shall do the work; all ways give the same path
+    engine = SearchEngine(database, kernels, exhaustive=job.backend != "auto")
     answer = engine.synthesise(SpeechInput(speech.transcript, modifiers, pins), progress.part(0.25, 0.5))
 
     began = time.perf_counter()
@@ -65,10 +66,11 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
             rig = FaceRig.of(job.face, database.markers, job.marker_file, progress.part(0.5, 0.55))
         except FaceUnavailable as error:
             warnings.append(f"{error} Markers are drawn instead.")
-            video = VideoSettings(video.fps, video.width, video.height, "markers", video.start_frame)
+            video = replace(video, style="markers")
     for i, path in enumerate(job.outputs):
         share = 0.45 / len(job.outputs)
-        export(answer.motion, speech.audio, rig, path, video, progress.part(0.55 + i * share, 0.55 + (i + 1) * share))
+        stage = progress.part(0.55 + i * share, 0.55 + (i + 1) * share)
+        export(answer.motion, speech.audio, rig, path, video, stage, speech.transcript)
     seconds = {
         "align": aligned_s, "search": answer.search_s, "synthesis": answer.synthesis_s,
         "render": time.perf_counter() - began,
@@ -76,6 +78,8 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
     return {
         "phonemes": phoneme_rows(speech.transcript, answer, database.nodes),
         "cost": answer.path.cost,
+        "lower_bound": answer.path.lower_bound,
+        "optimal": answer.path.is_optimal,
         "backend": backend_sentence,
         "engine": job.engine,
         "text": speech.text,
