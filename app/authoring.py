@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
@@ -27,10 +28,13 @@ from core.document.document import DEFAULT_FACE, AlignedSpeech, Document, Edit, 
 from core.document.edits import PinMotionNode, SetDatabase, SetEmotion, SetFace, SetSpeech
 from core.document.view_state import ViewState
 from core.errors import UserFacingError
+from core.media.audio import Audio
 from core.progress import Progress
 from core.search.engine import SearchAnswer, SearchEngine, SpeechInput
 from core.speech.emotion import EmotionModifier
+from core.speech.loudness import levels_db
 from core.speech.phoneme import PAU
+from core.synthesis.pose_tracks import PoseTracks
 
 
 class _EditCommand(QUndoCommand):
@@ -55,12 +59,14 @@ class Authoring(QObject):
 
     failed(sentence, remedy) : for the message bar; noted(sentence) : for the status bar
     rig_changed() : another face, or none, is to be drawn; see `rig`
+    tracks_changed() : head, gaze or tongue move otherwise; see `tracks`
     backend_changed(str) : which compute backend searches
     """
 
     failed = Signal(str, str)
     noted = Signal(str)
     rig_changed = Signal()
+    tracks_changed = Signal()
     backend_changed = Signal(str)
 
     def __init__(self, face: FaceChoice | None = DEFAULT_FACE, parent: QObject | None = None) -> None:
@@ -72,6 +78,8 @@ class Authoring(QObject):
         self.undo_stack = QUndoStack(self)
         self.film = FilmComposer(self.document, self.jobs, self)
         self.rig: FaceRig | None = None
+        self.head_moves = True
+        self._tracks = PoseTracks()
         self._engines: dict[str, SearchEngine] = {}
         self._engine_lock = threading.Lock()
         self._animated: AlignedSpeech | None = None
@@ -189,15 +197,29 @@ class Authoring(QObject):
     def _solve(self) -> None:
         speech, database = self.document.speech_input(), self.document.database
         if speech is not None and database is not None:
-            request = (self._engines[database.content_hash], speech, self._engine_lock)
+            request = _SolveRequest(
+                self._engines[database.content_hash], self._engine_lock, speech, self.document.speech.audio
+            )
             self.jobs.start("search", texts.SYNTHESISING, request, _solve, self._on_solved)
 
-    def _on_solved(self, answer: SearchAnswer) -> None:
+    def _on_solved(self, solved: tuple[SearchAnswer, PoseTracks]) -> None:
+        answer, self._tracks = solved
         self.document.show_answer(answer)
         after = self.undo_stack.undoText() or texts.SYNTHESISE
         self.noted.emit(texts.SOLVED.format(milliseconds=1000 * answer.search_s, after=after))
         if self.view.slot is None:
             self._select_a_vowel()
+
+    @property
+    def tracks(self) -> PoseTracks:
+        """What moves besides the markers, at the rate of the motion on show."""
+        return self._tracks if self.head_moves else replace(self._tracks, head=None, gaze=None)
+
+    def set_head_moves(self, moves: bool) -> None:
+        """Let head and gaze move by themselves, or keep them still."""
+        self.head_moves = moves
+        self.tracks_changed.emit()
+        self.film.set_head_moves(moves)
 
     def _select_a_vowel(self) -> None:
         """Select the longest phone in the middle of the sentence, so that the map is not blank."""
@@ -295,7 +317,18 @@ def whole_emotion(emotion: str, intensity: float = 1.0) -> tuple[EmotionModifier
     return (EmotionModifier(0.0, float("inf"), emotion, intensity),)
 
 
-def _solve(request: tuple[SearchEngine, SpeechInput, threading.Lock], progress: Progress) -> SearchAnswer:
-    engine, speech, lock = request
-    with lock:  # a retired search may still hold the kernels
-        return engine.synthesise(speech, progress)
+@dataclass(frozen=True)
+class _SolveRequest:
+    engine: SearchEngine
+    lock: threading.Lock
+    speech: SpeechInput
+    audio: Audio
+
+
+def _solve(request: _SolveRequest, progress: Progress) -> tuple[SearchAnswer, PoseTracks]:
+    with request.lock:  # a retired search may still hold the kernels
+        answer = request.engine.synthesise(request.speech, progress)
+    motion, audio = answer.motion, request.audio
+    loudness_db = levels_db(audio.samples, audio.rate_hz)
+    tracks = PoseTracks.of(request.speech.transcript, motion.rate_hz, len(motion.positions), loudness_db)
+    return answer, tracks

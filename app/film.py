@@ -41,6 +41,7 @@ class FilmComposer(QObject):
         self.fps_name = "30"
         self._document, self._jobs = document, jobs
         self._rig: FaceRig | None = None
+        self._head_moves = True
         self._folder = tempfile.TemporaryDirectory(prefix="efase-films-", ignore_cleanup_errors=True)
         self._n_films = 0
         self._soon = QTimer(self, singleShot=True, interval=_COMPOSE_AFTER_MS)
@@ -60,6 +61,11 @@ class FilmComposer(QObject):
     def set_rig(self, rig: FaceRig | None) -> None:
         """Draw another face, or markers."""
         self._rig = rig
+        self.renew()
+
+    def set_head_moves(self, moves: bool) -> None:
+        """Let head and gaze move by themselves, or keep them still."""
+        self._head_moves = moves
         self.renew()
 
     def renew(self) -> None:
@@ -84,8 +90,10 @@ class FilmComposer(QObject):
         path = Path(self._folder.name) / f"synthesis-{self._n_films}.avi"
         width, height = _SIZE_PX
         style = "face" if self._rig is not None else "markers"
-        settings = VideoSettings(fps=FRAME_RATES[self.fps_name], width=width, height=height, style=style)
-        request = FilmRequest(answer.motion, speech.audio, self._rig, settings, path)
+        settings = VideoSettings(
+            FRAME_RATES[self.fps_name], width, height, style, head=self._head_moves, gaze=self._head_moves
+        )
+        request = FilmRequest(answer.motion, speech.audio, speech.transcript, self._rig, settings, path)
         self._jobs.start("film", texts.COMPOSING, request, compose_apart, self._on_composed, self._on_failed)
 
     def save(self, path: Path) -> None:

@@ -14,6 +14,7 @@ from app.pictures import FaceRig
 from core.errors import UserFacingError
 from core.media.audio import Audio
 from core.progress import Progress
+from core.speech.transcript import Transcript
 from core.synthesis.marker_motion import MarkerMotion
 
 _ASK_EVERY_S = 0.05
@@ -22,10 +23,11 @@ _POLITENESS = 5
 
 @dataclass(frozen=True)
 class FilmRequest:
-    """All that a film needs; without a rig, markers are drawn."""
+    """All that a film needs; without a rig, markers are drawn; the transcript moves the tongue, and head and gaze."""
 
     motion: MarkerMotion
     audio: Audio
+    transcript: Transcript
     rig: FaceRig | None
     settings: VideoSettings
     path: Path
@@ -71,7 +73,10 @@ def _compose(request: FilmRequest, tells: Connection) -> None:
     if hasattr(os, "nice"):
         os.nice(_POLITENESS)
     try:
-        export(request.motion, request.audio, request.rig, request.path, request.settings, _Telling(tells))
+        export(
+            request.motion, request.audio, request.rig, request.path, request.settings, _Telling(tells),
+            request.transcript,
+        )  # fmt: skip
         tells.send(None)
     except UserFacingError as error:
         tells.send((error.message, error.remedy))

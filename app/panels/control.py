@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from PySide6.QtCore import Qt, Signal
@@ -25,13 +26,18 @@ from app.loading import SpeechRequest
 from app.panels.pane import ElidedLabel, label
 from app.theme import STEP, theme
 from core.document.change import Change
-from core.document.document import DEFAULT_FACE
+from core.document.document import FaceChoice
+from core.face.characters import CHARACTERS
 from core.speech.emotion import EMOTIONS
 
 WIDTH_PX = 272
 _TRANSCRIPT_PX = 72
 _OPEN = "open"
-_FACES = ((texts.FACE_DEFAULT, DEFAULT_FACE), (texts.FACE_NONE, None), (texts.OPEN_FACE, _OPEN))
+_FACES = (
+    *((re.split("[;:]", character.description)[0], FaceChoice(name)) for name, character in CHARACTERS.items()),
+    (texts.FACE_NONE, None),
+    (texts.OPEN_FACE, _OPEN),
+)
 
 
 class ControlPanel(QWidget):
@@ -113,7 +119,7 @@ class ControlPanel(QWidget):
 
     def on_backend_changed(self, sentence: str) -> None:
         """Show which backend computes."""
-        self.engine.setText(sentence)
+        self.engine.setText(texts.ENGINE_FACTS.format(backend=sentence))
 
     def on_transcript_edited(self) -> None:
         """Offer to align what was written."""
@@ -186,7 +192,7 @@ class ControlPanel(QWidget):
 
     def _make_emotion(self) -> None:
         self._title(texts.EMOTION)
-        self.emotion = QComboBox(toolTip=texts.EMOTION_TIP)
+        self.emotion = _combo(texts.EMOTION_TIP)
         for emotion in EMOTIONS:
             self.emotion.addItem(dot(theme().emotion[emotion]), emotion, emotion)
         self.emotion.activated.connect(self.on_emotion_chosen)
@@ -199,7 +205,7 @@ class ControlPanel(QWidget):
 
     def _make_face(self) -> None:
         self._title(texts.FACE)
-        self.face = QComboBox(toolTip=texts.FACE_TIP)
+        self.face = _combo(texts.FACE_TIP)
         for text, data in _FACES:
             self.face.addItem(text, data)
         self.face.activated.connect(self.on_face_chosen)
@@ -278,7 +284,7 @@ class ControlPanel(QWidget):
         face = self._authoring.document.face
         while self.face.count() > len(_FACES):
             self.face.removeItem(0)
-        if face not in (None, DEFAULT_FACE):
+        if face not in [data for _, data in _FACES]:
             self.face.insertItem(0, Path(face.name).name, face)
         rows = [row for row in range(self.face.count()) if self.face.itemData(row) == face]
         self.face.setCurrentIndex(rows[0])
@@ -304,7 +310,7 @@ class ControlPanel(QWidget):
             self.slot_cost.setText("")
             return
         path, unit = document.answer.path, document.database.weights.pnt
-        self.cost.setText(texts.COST.format(cost=path.cost / unit))
+        self.cost.setText((texts.COST_PROVED if path.is_optimal else texts.COST).format(cost=path.cost / unit))
         if slot is None or slot >= len(path.nodes):
             self.slot_cost.setText("")
             return
@@ -324,3 +330,10 @@ class ControlPanel(QWidget):
         self.synthesise_button.setEnabled(self._authoring.can_synthesise)
         self.synthesise_button.setToolTip(tip)
         self.align_button.setEnabled(self.transcript_is_new)
+
+
+def _combo(tip: str) -> QComboBox:
+    """Make a list that is as wide as the panel, however long its longest entry is."""
+    combo = QComboBox(toolTip=tip, minimumContentsLength=1)
+    combo.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+    return combo

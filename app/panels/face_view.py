@@ -39,7 +39,8 @@ class FaceView(QOpenGLWidget):
         self._markers: MarkerSet | None = None
         self._rig: FaceRig | None = None
         self._displacements: np.ndarray | None = None
-        self._style = Style.SHADED
+        self._besides: dict[str, object] = {}
+        self._style = Style.TEXTURED
         self._front: dict[bool, Camera] = {}
         self._camera: dict[bool, Camera] = {}
         self._drag_from: QPointF | None = None
@@ -66,9 +67,12 @@ class FaceView(QOpenGLWidget):
         self._style = style
         self._renew("pose")
 
-    def show_pose(self, displacements: np.ndarray | None) -> None:
-        """Show markers displaced from rest, shape (n_markers, 3), mm; None is the rest pose."""
-        self._displacements = displacements
+    def show_pose(self, displacements: np.ndarray | None, besides: dict[str, object] | None = None) -> None:
+        """Show markers displaced from rest, shape (n_markers, 3), mm; None is the rest pose.
+
+        besides : what moves besides the markers, as `core.synthesis.pose_tracks.PoseTracks.at` gives it
+        """
+        self._displacements, self._besides = displacements, besides or {}
         self._renew("pose")
 
     @property
@@ -132,7 +136,7 @@ class FaceView(QOpenGLWidget):
             if displacements is None:
                 displacements = np.zeros((len(self._markers), 3), np.float32)
             if self.shows_mesh:
-                renderer.set_positions(self._rig.deform(displacements))
+                renderer.set_positions(self._rig.pose(displacements, **self._besides))
             else:
                 renderer.markers.set_positions(self._markers.rest + displacements)
             self._stale["pose"] = False

@@ -23,6 +23,7 @@ class MotionPane(Pane):
             (Style.MARKERS.value, texts.MARKERS, texts.MARKERS_TIP),
             (Style.WIREFRAME.value, texts.WIREFRAME, texts.WIREFRAME_TIP),
             (Style.SHADED.value, texts.SHADED, texts.SHADED_TIP),
+            (Style.TEXTURED.value, texts.TEXTURED, texts.TEXTURED_TIP),
         ])  # fmt: skip
         self.style.group.idClicked.connect(lambda _: self.face_view.set_style(Style(self.style.key)))
         self.header.addWidget(self.style)
@@ -34,6 +35,7 @@ class MotionPane(Pane):
         self.footer.addWidget(self.transport, 1)
         authoring.player.playing_changed.connect(self.transport.show_playing)
         authoring.rig_changed.connect(self.on_rig_changed)
+        authoring.tracks_changed.connect(lambda: self.on_playhead_moved(authoring.view.playhead_s))
         authoring.jobs.started.connect(self._say_what_is_next)
         authoring.jobs.ended.connect(self._say_what_is_next)
         authoring.view.playhead_moved.connect(self.on_playhead_moved)
@@ -70,7 +72,7 @@ class MotionPane(Pane):
     def on_rig_changed(self) -> None:
         """Show another face."""
         self.face_view.set_rig(self._authoring.rig)
-        for key in (Style.WIREFRAME.value, Style.SHADED.value):
+        for key in (Style.WIREFRAME.value, Style.SHADED.value, Style.TEXTURED.value):
             self.style.button(key).setEnabled(self._authoring.rig is not None)
 
     def on_playhead_moved(self, time_s: float) -> None:
@@ -79,7 +81,8 @@ class MotionPane(Pane):
         self.transport.show_time(time_s, film.fps, film.fps_name)
         motion = self.motion
         if motion is not None:
-            self.face_view.show_pose(motion.positions[self.frame] - motion.markers.rest)
+            besides = self._authoring.tracks.at(self.frame)
+            self.face_view.show_pose(motion.positions[self.frame] - motion.markers.rest, besides)
 
     def _say_what_is_next(self, *_: object) -> None:
         if self.motion is not None:

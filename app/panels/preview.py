@@ -30,7 +30,7 @@ class PreviewPane(Pane):
         self.pick: MapPick | None = None
         self.style = Choice([
             (Style.MARKERS.value, texts.MARKERS, texts.MARKERS_TIP),
-            (Style.SHADED.value, texts.SHADED, texts.SHADED_TIP),
+            (Style.TEXTURED.value, texts.TEXTURED, texts.TEXTURED_TIP),
         ])  # fmt: skip
         self.style.group.idClicked.connect(lambda _: self.face_view.set_style(Style(self.style.key)))
         self.header.addWidget(self.style)
@@ -59,7 +59,7 @@ class PreviewPane(Pane):
     def on_rig_changed(self) -> None:
         """Show another face."""
         self.face_view.set_rig(self._authoring.rig)
-        self.style.button(Style.SHADED.value).setEnabled(self._authoring.rig is not None)
+        self.style.button(Style.TEXTURED.value).setEnabled(self._authoring.rig is not None)
 
     def show_pick(self, pick: MapPick | None) -> None:
         """Show a place of the map; None leaves what is there."""
