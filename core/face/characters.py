@@ -50,7 +50,7 @@ CHARACTERS: dict[str, Character] = {
         lips_closed=0.35,
         look=Look(
             lips=(0.390, 0.100, 0.092), hair=(0.040, 0.020, 0.011), brows=(0.036, 0.020, 0.013),
-            iris=(0.085, 0.120, 0.110), hair_mm=7.0, freckles=0.25, blush=0.7,
+            iris=(0.085, 0.120, 0.110), hair_mm=7.0, brow_weight=1.25, freckles=0.25, blush=0.7,
         ),
     ),
     "ben": Character(

@@ -152,7 +152,7 @@ void main() {
     lit = tooth(to_eye);
 #elif PART == 3
     float groove = 1.0 - 0.35 * exp(-rest.x * rest.x * 0.35);
-    lit = TONGUE * groove * diffuse_light(n, vec3(0.7, 0.5, 0.45), 0.9) * open;
+    lit = TONGUE * groove * diffuse_light(n, vec3(0.9, 0.7, 0.65), 1.0) * (0.22 + 0.78 * open);
     lit += highlights(n, to_eye, 30.0, 0.035) * open * 0.7;
 #elif PART == 4
     // rest: 0..1 from the inner to the outer corner, root to tip, and strength; single hairs that lean outwards
