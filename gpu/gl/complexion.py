@@ -6,6 +6,9 @@ import numpy as np
 
 from core.face.face import PARTS, Face
 
+# Shoulders fade away over this much of the outer eye distance.
+FADE_WIDTH = 0.38
+
 # Material numbers, as shaders/glsl/face.frag knows them.
 SKIN, EYE, UPPER_TEETH, TONGUE, LASHES, SOCKET, LOWER_TEETH = range(7)
 _MATERIAL_OF_PART = {
@@ -123,19 +126,30 @@ def tooth_arch(face: Face) -> tuple[tuple[float, float, float], tuple[float, flo
     return (float(at[:, 2].max()) - depth, half, depth), (edge, top)
 
 
-def bust_ball(face: Face) -> tuple[float, float, float, float]:
-    """Return centre and radius, mm, of the ball at whose rim shoulders fade away; radius 0 where there are none."""
+def edge_fade(face: Face) -> np.ndarray:
+    """Return how far each vertex has faded into the backdrop, float32 0..1, shape (n_vertices,).
+
+    1 along the edge at which neck or shoulders end, 0 from a third of the outer eye distance away. 0 all over where
+    the landmarks are unknown.
+    """
+    from scipy.spatial import cKDTree
+
+    fade = np.zeros(len(face.positions), np.float32)
     needed = ("outer_eye_left", "outer_eye_right", "chin")
     if any(name not in face.landmarks for name in needed):
-        return 0.0, 0.0, 0.0, 0.0
-    skin = face.positions[face.vertices_of("skin")]
-    chin, scale = face.positions[face.landmarks["chin"]], face.outer_eye_distance
-    lowest = skin[:, 1].min()
-    if lowest > chin[1] - 0.9 * scale:
-        return 0.0, 0.0, 0.0, 0.0
-    middle = np.array([0.0, chin[1] + 0.13 * scale, chin[2] - 0.88 * scale])
-    reach = np.linalg.norm(skin[skin[:, 1] < chin[1] - 0.5 * scale] - middle, axis=1).max()
-    return (*map(float, middle), float(reach))
+        return fade
+    edges = np.sort(
+        np.concatenate([face.triangles[:, [0, 1]], face.triangles[:, [1, 2]], face.triangles[:, [2, 0]]]), 1
+    )
+    unique, uses = np.unique(edges, axis=0, return_counts=True)
+    rim = np.unique(unique[uses == 1])
+    below = face.positions[face.landmarks["chin"], 1] - 0.3 * face.outer_eye_distance
+    rim = rim[(face.part[rim] == PARTS.index("skin")) & (face.positions[rim, 1] < below)]
+    skin = face.vertices_of("skin")
+    if len(rim):
+        gap = cKDTree(face.positions[rim]).query(face.positions[skin])[0]
+        fade[skin] = np.clip(1.0 - gap / (FADE_WIDTH * face.outer_eye_distance), 0.0, 1.0)
+    return fade
 
 
 def eyeball_centre(ball: np.ndarray) -> np.ndarray:

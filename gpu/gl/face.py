@@ -39,7 +39,6 @@ class FaceRenderer:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
-        self._cover = compile_program(ctx, "glsl/face.vert", "glsl/cover.frag")
         self._wire = compile_program(ctx, "glsl/face.vert", "glsl/wire.frag", "glsl/wire.geom")
         self._backdrop = compile_program(ctx, "glsl/background.vert", "glsl/background.frag")
         self._backdrop_array = ctx.vertex_array(self._backdrop, [])
@@ -74,7 +73,8 @@ class FaceRenderer:
         self.light = self._openness(rest, normals, triangles, material) if light is None else light
         surface[:, 2] = self.light
         surface[:, 3] = complexion.blush_weights(face)
-        hair = np.column_stack([complexion.hair_depth(face), complexion.beard_weights(face)]).astype(np.float32)
+        growth = [complexion.hair_depth(face), complexion.beard_weights(face), complexion.edge_fade(face)]
+        hair = np.column_stack(growth).astype(np.float32)
         uv = np.zeros((len(rest), 2), np.float32) if face.uv is None else np.ascontiguousarray(face.uv, np.float32)
         self._hair_lift = complexion.hair_lift(face)
         self._haired = np.flatnonzero(self._hair_lift > 0)
@@ -90,16 +90,15 @@ class FaceRenderer:
             (self._normal_buffer, "3f", "in_normal"),
             (places, "3f", "in_rest"),
             (surfaces, "4f", "in_surface"),
-            (hairs, "2f", "in_hair"),
+            (hairs, "3f", "in_hair"),
             (uvs, "2f", "in_uv"),
         ]
         self._surfaces = FaceSurfaces(ctx, face, inputs, indices, kind[order])
-        self._cover_array = ctx.vertex_array(self._cover, inputs, indices, skip_errors=True)
         self._wire_array = ctx.vertex_array(self._wire, inputs, indices, skip_errors=True)
         hidden = np.zeros((-(-max(len(triangles), 1) // _EDGE_ROW), _EDGE_ROW), np.uint8)
         hidden.ravel()[: len(triangles)] = complexion.quad_diagonals(triangles, rest)
         self._hidden_edges = ctx.texture((_EDGE_ROW, len(hidden)), 1, hidden.tobytes(), dtype="u1", alignment=1)
-        self._mesh = [self._surfaces, self._cover_array, self._wire_array, self._positions, self._normal_buffer]
+        self._mesh = [self._surfaces, self._wire_array, self._positions, self._normal_buffer]
         self._mesh += [places, surfaces, hairs, uvs, indices, self._hidden_edges]
 
         self._face = face
@@ -183,29 +182,24 @@ class FaceRenderer:
         self._free_mesh()
         self.markers.release()
         self.set_texture(None)
-        for thing in (self._backdrop_array, self._backdrop, self._cover, self._wire, self._grain):
+        for thing in (self._backdrop_array, self._backdrop, self._wire, self._grain):
             thing.release()
 
     def _draw_mesh(self, view: np.ndarray, projection: np.ndarray, size_px: tuple[int, int], style: Style) -> None:
         ctx = self._ctx
         ctx.enable_only(moderngl.DEPTH_TEST)
         view, projection = (np.ascontiguousarray(matrix.T, np.float32) for matrix in (view, projection))
-        program = self._wire if style is Style.WIREFRAME else self._cover
-        program["view"].write(view.tobytes())
-        program["projection"].write(projection.tobytes())
         if style is Style.WIREFRAME:
-            program["viewport_px"].value = size_px
+            self._wire["view"].write(view.tobytes())
+            self._wire["projection"].write(projection.tobytes())
+            self._wire["viewport_px"].value = size_px
             self._hidden_edges.use(0)
             self._wire_array.render()
             return
         self._grain.use(0)
         if self._picture is not None:
             self._picture.use(1)
-        # depth first, so that each pixel is shaded once
-        self._cover_array.render(vertices=self._surfaces.n_solid_corners)
-        ctx.depth_func = "<="
         self._surfaces.draw(self._texture_mode(style), view, projection, size_px)
-        ctx.depth_func = "<"
 
     def _texture_mode(self, style: Style) -> int:
         if style is not Style.TEXTURED:

@@ -28,10 +28,7 @@ def kind_of_triangles(face: Face, triangles: np.ndarray) -> np.ndarray:
         kind[material == number] = KINDS.index(name)
     skin = material == SKIN
     corners = face.positions[triangles]
-    x, y, z, radius = complexion.bust_ball(face)
-    if radius > 0:
-        far = (np.linalg.norm(corners - (x, y, z), axis=2) > 0.78 * radius).any(axis=1)
-        kind[skin & far & (corners[:, :, 1].min(axis=1) < y + 0.35 * radius)] = KINDS.index("shoulders")
+    kind[skin & (complexion.edge_fade(face)[triangles] > 0).any(axis=1)] = KINDS.index("shoulders")
     arcs, width_mm = complexion.brow_arcs(face)
     if width_mm > 0:
         low, high = arcs[:, 1].min() - 1.5 * width_mm, arcs[:, 1].max() + 1.5 * width_mm
@@ -57,11 +54,6 @@ class FaceSurfaces:
         starts = np.searchsorted(kind, np.arange(len(KINDS) + 1))
         self._ranges = {name: (int(starts[k]), int(starts[k + 1])) for k, name in enumerate(KINDS)}
         self._arrays: dict[tuple[str, int], tuple[moderngl.Program, moderngl.VertexArray]] = {}
-
-    @property
-    def n_solid_corners(self) -> int:
-        """How many indices come before the lashes."""
-        return 3 * self._ranges["lashes"][0]
 
     def draw(self, texture: int, view: np.ndarray, projection: np.ndarray, size_px: tuple[int, int]) -> None:
         """Draw all surfaces; ``texture`` as TEXTURE in ``face.frag``, matrices float32 and column-major."""
@@ -114,7 +106,6 @@ class FaceSurfaces:
         _set(program, "age_and_lash", (look.age, look.lash_weight))
         _set(program, "arch", arch)
         _set(program, "edges", edges)
-        _set(program, "bust_mm", complexion.bust_ball(face))
 
 
 def _set(program: moderngl.Program, name: str, value: object) -> None:

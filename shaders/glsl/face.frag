@@ -6,7 +6,6 @@
 //   TEXTURE  of skin; 0: one colour; 1: procedural; 2: `picture`, sRGB
 //   BROW, HAIR, FADE  1 where skin has brows, has hair, or ends
 //   arch  of the teeth: z of its middle, half its width, its depth; edges: y of the incisors' edges; mm at rest
-//   bust_mm  centre and radius of the ball at whose rim the shoulders fade into the backdrop; radius 0: none
 #include "light.glsl"
 #include "backdrop.glsl"
 #include "hairs.glsl"
@@ -15,7 +14,7 @@ in vec3 pos_view;
 in vec3 normal_view;
 in vec3 rest;
 in vec3 surface;
-in vec2 hair;
+in vec3 hair;
 in vec2 uv;
 
 uniform sampler2D picture;
@@ -30,7 +29,6 @@ uniform vec4 marks;         // lip tint, blush, freckles, stubble
 uniform vec2 age_and_lash;  // age, weight of the lashes
 uniform vec3 arch;
 uniform vec2 edges;
-uniform vec4 bust_mm;
 
 out vec4 colour;
 
@@ -170,9 +168,7 @@ void main() {
 #endif
     vec3 shown = to_screen(lit);
 #if FADE == 1
-    float away = length(rest - bust_mm.xyz) / bust_mm.w;
-    float gone = rest.y < bust_mm.y + 0.35 * bust_mm.w ? smoothstep(0.80, 0.985, away) : 0.0;
-    shown = mix(shown, backdrop(gl_FragCoord.xy / viewport_px * 2.0 - 1.0), gone);
+    shown = mix(shown, backdrop(gl_FragCoord.xy / viewport_px * 2.0 - 1.0), smoothstep(0.0, 0.92, hair.z));
 #endif
     colour = vec4(shown, cover);
 }

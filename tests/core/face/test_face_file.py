@@ -1,9 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from core.errors import UserFacingError
 from core.face.face import Face
 from core.face.face_file import read_face, save_face, write_arrays
+from core.face.look import Look
 
 
 def small_face():
@@ -33,6 +36,15 @@ def test_a_face_without_texture_landmarks_and_units_comes_back_so(tmp_path):
     assert back.uv is None
     assert not back.landmarks
     assert not back.units
+
+
+def test_look_and_masks_are_read_back(tmp_path):
+    masks = {"hair": np.array([-3, 2, 1, 0], np.float32)}
+    face = replace(small_face(), look=Look(skin=(0.1, 0.2, 0.3), hair_mm=4.0), masks=masks)
+    save_face(face, tmp_path / "f.npz")
+    back = read_face(tmp_path / "f.npz")
+    assert back.look == face.look
+    np.testing.assert_array_equal(back.masks["hair"], masks["hair"])
 
 
 @pytest.mark.parametrize("length", [0, 10, 300, -1])
