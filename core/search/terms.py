@@ -17,6 +17,9 @@ from core.motion.node import NIL, NodeTable
 from core.search.weights import SearchWeights
 from core.speech.phoneme import PAU, PHONEME_INDEX, VISEME_OF_PHONEME
 
+_SAMPLED_NODES = 500
+_PRODUCT_ROUNDING = 1e-6  # relative; a distance by a matrix product, and the float32 that costs are held in
+
 
 @dataclass(frozen=True)
 class TransitionBlock:
@@ -111,6 +114,20 @@ class TransitionTerms:
         block[pre[:, None] == sources[None]] = 0.0
         return block
 
+    def least_costs(self, targets: np.ndarray, sources: np.ndarray, weights: SearchWeights) -> np.ndarray:
+        """Return costs that TC of table 1 cannot fall below, cheaply: without DSC and the viseme penalty.
+
+        float64, shape (n_targets, n_sources)
+        """
+        pre = self.nodes.pre[targets]
+        root = np.sqrt(weights.alpha3)
+        arriving = np.concatenate([self._first_pose[targets] * root, self._first_velocity[targets]], axis=1)
+        leaving = np.concatenate([self._last_pose[sources] * root, self._last_velocity[sources]], axis=1)
+        bound = _squared_distances(arriving, leaving) * (1.0 - _PRODUCT_ROUNDING)
+        bound[pre == NIL] = weights.alpha1 * weights.pnt
+        bound[pre[:, None] == sources[None]] = 0.0
+        return bound
+
     def of_pair(self, source: int, target: int) -> tuple[float, float, float, bool]:
         """Return PGap, VGap, DSC and whether the visemes differ, of one pair; ``target`` has a predecessor."""
         (block,) = self.blocks(np.array([target]), sources=np.array([source]))
@@ -192,10 +209,11 @@ def default_weights(frames: np.ndarray, nodes: NodeTable, rate_hz: float, seed: 
     """
     rng = np.random.default_rng(seed)
     terms = TransitionTerms(frames, nodes, rate_hz)
-    # a few hundred targets against all nodes: a random sample of pairs that costs a few matrix products
+    # some targets against some sources: a random sample of pairs that costs a few matrix products at any size
     with_pre = np.flatnonzero(nodes.pre != NIL)
-    sample = rng.choice(with_pre, min(300, len(with_pre)), replace=False)
-    blocks = list(terms.blocks(np.sort(sample)))
+    targets = rng.choice(with_pre, min(_SAMPLED_NODES, len(with_pre)), replace=False)
+    sources = rng.choice(len(nodes), min(_SAMPLED_NODES, len(nodes)), replace=False)
+    blocks = list(terms.blocks(np.sort(targets), np.sort(sources)))
     if not blocks:
         return SearchWeights(pnt=1.0)
 
