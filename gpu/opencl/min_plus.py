@@ -8,7 +8,8 @@ from core.errors import UserFacingError
 from core.search.compute import DeviceReport
 from gpu.sources import shader_source
 
-_LANES = 16  # columns that a work-item takes at once; rows are padded to a multiple
+_LANES = 16  # rows are padded to a multiple of as many columns
+_ROWS = 8  # rows that a work-item of the forward step owns
 
 
 class OpenClKernels:
@@ -18,7 +19,7 @@ class OpenClKernels:
         import pyopencl as cl
 
         self._cl = cl
-        device, self._context, program = _first_that_builds(cl, shader_source("opencl/min_plus.cl"))
+        device, self._context, program = _first_that_builds(cl, shader_source("opencl/min_plus.cl", {"ROWS": _ROWS}))
         self._queue = cl.CommandQueue(self._context)
         self._forward = cl.Kernel(program, "min_plus")
         self._both = cl.Kernel(program, "min_plus_both")
@@ -43,11 +44,8 @@ class OpenClKernels:
                 f"{asked >> 20} MiB.",
                 "Use --backend numpy, or a smaller database.",
             )
-        if self._stride == self._n_nodes:
-            padded = transition
-        else:
-            padded = np.zeros((self._n_nodes, self._stride), np.float32)
-            padded[:, : self._n_nodes] = transition
+        padded = np.zeros((-(-self._n_nodes // _ROWS) * _ROWS, self._stride), np.float32)
+        padded[: self._n_nodes, : self._n_nodes] = transition
         cl, flags = self._cl, self._cl.mem_flags
         row, column = self._n_nodes * 8, self._stride * 8
         self._buffers = {
@@ -64,8 +62,8 @@ class OpenClKernels:
         self._write_front(front)
         maps = self._buffers
         self._forward(
-            self._queue, (self._n_nodes,), None, maps["DistanceMap"], maps["PrevCostBufferMap"], maps["CostValueMap"],
-            np.uint32(self._n_nodes), np.uint32(self._stride),
+            self._queue, (-(-self._n_nodes // _ROWS),), None, maps["DistanceMap"], maps["PrevCostBufferMap"],
+            maps["CostValueMap"], np.uint32(self._n_nodes), np.uint32(self._stride),
         )  # fmt: skip
         return self._read("CostValueMap")
 

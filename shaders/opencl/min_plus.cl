@@ -3,7 +3,8 @@
 // References: core/search/compute.py, NumpyKernels.min_plus and min_plus_both. Sums are double, so results equal the
 // reference bit by bit. The names of the buffers are those of Deng and Neumann 2008, table 3.
 //
-// DistanceMap         float  (n_nodes rows of `stride`), cost of following n by m, row m; padded with 0
+// DistanceMap         float  (n_nodes rows of `stride`, rows padded to a multiple of ROWS), cost of following n by m,
+//                     row m; padded with 0
 // PrevCostBufferMap   double (stride), cost of the best path that ends in n; padded with infinity
 // NextCostBufferMap   double (n_nodes), cost of the best path that starts in m, m's own cost included
 // CostValueMap        double (n_nodes), result: cheapest arrival
@@ -12,32 +13,45 @@
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 
 // Columns that stay in the first-level cache while all rows of a group pass over them.
-#define TILE 1024u
+#define TILE 2048u
 
-// One work-item owns one motion node m and reads its row once, contiguously.
+// One work-item owns ROWS motion nodes and reads their rows side by side: what it loads of the front, twice as wide as a
+// piece of a row, then serves all of them. A comparison costs less than fmin, which has to think of NaN.
+#define LESSER(a, b) select(a, b, (b) < (a))
+
 __kernel void min_plus(__global const float *restrict DistanceMap,
                        __global const double *restrict PrevCostBufferMap,
                        __global double *restrict CostValueMap,
                        const uint n_nodes,
                        const uint stride)
 {
-    const uint m = get_global_id(0);
-    if (m >= n_nodes)
-        return;
-    __global const float *row = DistanceMap + (ulong)m * stride;
-    // four independent minima hide the latency of fmin
-    double4 least0 = (double4)(INFINITY), least1 = least0, least2 = least0, least3 = least0;
-    for (uint n = 0; n < stride; n += 16) {
-        least0 = fmin(least0, vload4(0, PrevCostBufferMap + n) + convert_double4(vload4(0, row + n)));
-        least1 = fmin(least1, vload4(0, PrevCostBufferMap + n + 4) + convert_double4(vload4(0, row + n + 4)));
-        least2 = fmin(least2, vload4(0, PrevCostBufferMap + n + 8) + convert_double4(vload4(0, row + n + 8)));
-        least3 = fmin(least3, vload4(0, PrevCostBufferMap + n + 12) + convert_double4(vload4(0, row + n + 12)));
+    const uint first = get_global_id(0) * ROWS;
+    __global const float *rows = DistanceMap + (ulong)first * stride;
+    double4 least[ROWS];
+#pragma unroll
+    for (uint row = 0; row < ROWS; ++row)
+        least[row] = (double4)(INFINITY);
+    for (uint n = 0; n < stride; n += 8) {
+        const double4 front0 = vload4(0, PrevCostBufferMap + n);
+        const double4 front1 = vload4(0, PrevCostBufferMap + n + 4);
+#pragma unroll
+        for (uint row = 0; row < ROWS; ++row) {
+            __global const float *at = rows + (ulong)row * stride + n;
+            const double4 cost0 = front0 + convert_double4(vload4(0, at));
+            const double4 cost1 = front1 + convert_double4(vload4(0, at + 4));
+            least[row] = LESSER(least[row], cost0);
+            least[row] = LESSER(least[row], cost1);
+        }
     }
-    const double4 least = fmin(fmin(least0, least1), fmin(least2, least3));
-    CostValueMap[m] = fmin(fmin(least.x, least.y), fmin(least.z, least.w));
+#pragma unroll
+    for (uint row = 0; row < ROWS; ++row)
+        if (first + row < n_nodes)
+            CostValueMap[first + row] =
+                fmin(fmin(least[row].x, least[row].y), fmin(least[row].z, least[row].w));
 }
 
-// One work-item is a group that owns a stripe of rows, and reads each element of it once for both directions.
+// One work-item is a group that owns a stripe of rows, and reads each element of it once for both directions; ROWS rows
+// go side by side, so that the minima of a tile's columns are loaded and stored once for them.
 __kernel void min_plus_both(__global const float *restrict DistanceMap,
                             __global const double *restrict PrevCostBufferMap,
                             __global const double *restrict NextCostBufferMap,
@@ -47,7 +61,8 @@ __kernel void min_plus_both(__global const float *restrict DistanceMap,
                             const uint stride)
 {
     const uint group = get_global_id(0);
-    const uint rows = (n_nodes + get_global_size(0) - 1) / get_global_size(0);
+    const uint share = (n_nodes + get_global_size(0) - 1) / get_global_size(0);
+    const uint rows = (share + ROWS - 1) / ROWS * ROWS;
     const uint first = min(group * rows, n_nodes), last = min(first + rows, n_nodes);
     __global double *leaving = CostBuffMap + (ulong)group * stride;
     for (uint n = 0; n < stride; n += 4)
@@ -56,20 +71,31 @@ __kernel void min_plus_both(__global const float *restrict DistanceMap,
         CostValueMap[m] = INFINITY;
     for (uint tile = 0; tile < stride; tile += TILE) {
         const uint end = min(tile + TILE, stride);
-        for (uint m = first; m < last; ++m) {
-            __global const float *row = DistanceMap + (ulong)m * stride;
-            const double4 behind = (double4)(NextCostBufferMap[m]);
-            double4 least0 = (double4)(INFINITY), least1 = least0;
-            for (uint n = tile; n < end; n += 8) {
-                const double4 cost0 = convert_double4(vload4(0, row + n));
-                const double4 cost1 = convert_double4(vload4(0, row + n + 4));
-                least0 = fmin(least0, vload4(0, PrevCostBufferMap + n) + cost0);
-                least1 = fmin(least1, vload4(0, PrevCostBufferMap + n + 4) + cost1);
-                vstore4(fmin(vload4(0, leaving + n), behind + cost0), 0, leaving + n);
-                vstore4(fmin(vload4(0, leaving + n + 4), behind + cost1), 0, leaving + n + 4);
+        for (uint m = first; m < last; m += ROWS) {
+            double4 least[ROWS], behind[ROWS];
+#pragma unroll
+            for (uint row = 0; row < ROWS; ++row) {
+                least[row] = (double4)(INFINITY);
+                // rows of padding are read, and count for nothing
+                behind[row] = (double4)(m + row < last ? NextCostBufferMap[m + row] : INFINITY);
             }
-            const double4 least = fmin(least0, least1);
-            CostValueMap[m] = fmin(CostValueMap[m], fmin(fmin(least.x, least.y), fmin(least.z, least.w)));
+            for (uint n = tile; n < end; n += 4) {
+                const double4 front = vload4(0, PrevCostBufferMap + n);
+                double4 lowest = vload4(0, leaving + n);
+#pragma unroll
+                for (uint row = 0; row < ROWS; ++row) {
+                    const double4 cost = convert_double4(vload4(0, DistanceMap + (ulong)(m + row) * stride + n));
+                    const double4 arriving = front + cost, going = behind[row] + cost;
+                    least[row] = LESSER(least[row], arriving);
+                    lowest = LESSER(lowest, going);
+                }
+                vstore4(lowest, 0, leaving + n);
+            }
+#pragma unroll
+            for (uint row = 0; row < ROWS; ++row)
+                if (m + row < last)
+                    CostValueMap[m + row] = fmin(CostValueMap[m + row],
+                        fmin(fmin(least[row].x, least[row].y), fmin(least[row].z, least[row].w)));
         }
     }
 }

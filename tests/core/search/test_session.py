@@ -153,7 +153,7 @@ def test_edits_equal_cold_searches():
 
 @pytest.mark.prove
 def test_thousands_of_edit_sequences_equal_cold_searches():
-    explore(examples=3000, steps=50)
+    explore(examples=2000, steps=30)
 
 
 def test_remove_then_pin_uses_no_stale_table():
