@@ -80,7 +80,9 @@ class Authoring(QObject):
         self.rig: FaceRig | None = None
         self.head_moves = True
         self._tracks = PoseTracks()
+        # by content of the database, so that undo need not open or fit again
         self._engines: dict[str, SearchEngine] = {}
+        self._rigs: dict[tuple[FaceChoice, str], FaceRig] = {}
         self._engine_lock = threading.Lock()
         self._animated: AlignedSpeech | None = None
         self.document.changed.connect(self._on_document_changed)
@@ -178,9 +180,19 @@ class Authoring(QObject):
             self.push(PinMotionNode.on(self.document, slot, None))
 
     def set_face(self, face: FaceChoice | None) -> None:
-        """Show another face, or markers alone."""
-        if face != self.document.face:
+        """Show another face, or markers alone; a face that does not fit the markers changes nothing."""
+        database = self.document.database
+        if face == self.document.face:
+            return
+        if face is None or database is None:
             self.push(SetFace.on(self.document, face))
+            return
+
+        def fitted(rig: FaceRig) -> None:
+            self._rigs[face, database.content_hash] = rig
+            self.push(SetFace.on(self.document, face))
+
+        self.jobs.start("face", texts.FITTING_FACE, (face, database.markers), fit_face, fitted)
 
     # Synthesis
 
@@ -290,8 +302,17 @@ class Authoring(QObject):
             self.jobs.cancel("face")
             self._show_rig(None)
             return
-        request = (face, database.markers)
-        self.jobs.start("face", texts.FITTING_FACE, request, fit_face, self._show_rig, self._on_face_failed)
+        key = face, database.content_hash
+        if key in self._rigs:
+            self.jobs.cancel("face")
+            self._show_rig(self._rigs[key])
+            return
+
+        def fitted(rig: FaceRig) -> None:
+            self._rigs[key] = rig
+            self._show_rig(rig)
+
+        self.jobs.start("face", texts.FITTING_FACE, (face, database.markers), fit_face, fitted, self._on_face_failed)
 
     def _on_face_failed(self, error: UserFacingError) -> None:
         self.failed.emit(error.message, error.remedy)

@@ -50,7 +50,7 @@ def face_beside_markers(mesh: Path) -> FaceChoice:
 
 @dataclass(frozen=True)
 class OpenedDatabase:
-    """A database with its engine, ready to search, and what computes."""
+    """A database with its engine, and what computes."""
 
     database: MotionDatabase
     engine: SearchEngine
@@ -75,17 +75,18 @@ class DemoSentence:
 
 
 def open_motion_database(path: Path | None, progress: Progress) -> OpenedDatabase:
-    """Open a database (None: the demo's, which is built the first time) and price its transitions."""
+    """Open a database (None: the demo's, which is built the first time).
+
+    Its transitions are priced by the first search, so that its maps can be looked at before.
+    """
     from app.demo import demo_database
     from core.motion.database import open_database
     from gpu.device import open_kernels
 
     progress.step(0.0, texts.OPENING_DATABASE)
-    database = demo_database(progress.part(0.0, 0.9)) if path is None else open_database(path)
+    database = demo_database(progress) if path is None else open_database(path)
     kernels, backend = open_kernels()
-    engine = SearchEngine(database, kernels)
-    engine.prepare(progress.part(0.9, 1.0))
-    return OpenedDatabase(database, engine, backend)
+    return OpenedDatabase(database, SearchEngine(database, kernels), backend)
 
 
 def load_demo_sentence(name: str, _progress: Progress) -> DemoSentence:
@@ -106,6 +107,8 @@ def read_speech(request: SpeechRequest, progress: Progress) -> AlignedSpeech:
 
 def fit_face(request: tuple[FaceChoice, MarkerSet], progress: Progress) -> FaceRig:
     """Bind a face to a marker set."""
+    import scipy.ndimage  # noqa: F401  the renderer takes half a second to import it, and would on the main thread
+
     face, markers = request
     marker_file = None if face.marker_file is None else Path(face.marker_file)
     return FaceRig.of(face.name, markers, marker_file, progress)

@@ -116,6 +116,7 @@ def _style_sheet(t: Theme) -> str:
     QScrollBar::add-line, QScrollBar::sub-line {{ height: 0; width: 0; }}
     QLabel[role="title"] {{ color: {t.dim}; font-size: {SMALL_PX}px; letter-spacing: 1px; }}
     QLabel[role="small"] {{ color: {t.dim}; font-size: {SMALL_PX}px; }}
+    QLabel[role="warning"] {{ color: {t.accent}; font-size: {SMALL_PX}px; }}
     QLabel[role="empty"] {{ color: {t.dim}; }}
     QLabel[role="badge"] {{ color: {t.accent}; font-size: {SMALL_PX}px; border: 1px solid {t.accent};
         border-radius: 3px; padding: 0 4px; }}

@@ -140,6 +140,7 @@ class ControlPanel(QWidget):
             self._show_face()
             self.face_asked.emit()
         else:
+            self._show_face()  # until it is known to fit
             self._authoring.set_face(what)
 
     # Making
@@ -180,6 +181,8 @@ class ControlPanel(QWidget):
         self.transcript.setTabChangesFocus(True)
         self.transcript.textChanged.connect(self.on_transcript_edited)
         self._column.addWidget(self.transcript)
+        self.speech_warning = ElidedLabel("warning")
+        self._column.addWidget(self.speech_warning)
         row = QHBoxLayout()
         self.align_button = self._quiet(texts.ALIGN, texts.ALIGN_TIP, self.align)
         self.open_transcript_button = self._quiet(
@@ -263,6 +266,9 @@ class ControlPanel(QWidget):
                 phonemes=len(speech.transcript.phonemes),
             )  # fmt: skip
         self.speech_facts.setText(facts)
+        warnings = () if speech is None else speech.transcript.warnings
+        self.speech_warning.setVisible(bool(warnings))
+        self.speech_warning.setText("  ·  ".join(warnings))
         self.transcript.blockSignals(True)
         self.transcript.setPlainText("" if speech is None else speech.text)
         self.transcript.blockSignals(False)

@@ -11,7 +11,10 @@ from core.speech.emotion import EMOTIONS
 
 Z_SPLATS, Z_DOTS, Z_TRAJECTORY, Z_MARKS = -10, 0, 5, 10
 
-DOT_PX = 5
+# crowded maps take smaller, paler dots, so that their density still shows
+DOT_PX, CROWDED_DOT_PX = 5, 3
+DOT_COVER, CROWDED_DOT_COVER = 0.85, 0.5
+CROWD = 3000
 MARK_PX = 15
 _NO_POINTS = np.zeros((0, 2))
 
@@ -90,9 +93,11 @@ class MotionFrameDots(pg.ScatterPlotItem):
 
     def show_frames(self, points: np.ndarray, emotions: np.ndarray) -> None:
         """Show frames at ``points``, shape (n, 2), with emotions as indices into `EMOTIONS`."""
-        brushes = np.array([pg.mkBrush(colour(theme().emotion[e], 0.85)) for e in EMOTIONS], object)
+        crowded = len(points) > CROWD
+        size, cover = (CROWDED_DOT_PX, CROWDED_DOT_COVER) if crowded else (DOT_PX, DOT_COVER)
+        brushes = np.array([pg.mkBrush(colour(theme().emotion[e], cover)) for e in EMOTIONS], object)
         symbols = np.array([EMOTION_SYMBOLS[e] for e in EMOTIONS], object)
-        self.setData(pos=points, brush=brushes[emotions], symbol=symbols[emotions].tolist(), size=DOT_PX, pen=None)
+        self.setData(pos=points, brush=brushes[emotions], symbol=symbols[emotions].tolist(), size=size, pen=None)
 
 
 class NodeTrajectory(pg.PlotCurveItem):

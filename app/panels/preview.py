@@ -52,8 +52,11 @@ class PreviewPane(Pane):
         if change & Change.NODES:
             self.pick = None
             self.face_view.set_markers(None if database is None else database.markers)
-            self.caption.setText("")
-            self.show_empty(texts.ISOMAP_EMPTY if database is None else texts.PREVIEW_EMPTY)
+            self.caption.setText("" if database is None else texts.PREVIEW_REST)
+            if database is None:
+                self.show_empty(texts.ISOMAP_EMPTY)
+            else:
+                self.show_content()
         self._show_pinning()
 
     def on_rig_changed(self) -> None:

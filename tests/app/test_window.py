@@ -246,3 +246,43 @@ def test_a_late_answer_does_not_replace_a_newer_one(animated, qtbot):
         animated.authoring.toggle_pin(name(row))
     qtbot.waitUntil(idle(animated), timeout=WAIT_MS)
     assert document.answer.path.nodes[2] == rows[3]
+
+
+def test_a_face_that_cannot_be_read_is_one_sentence_and_the_old_choice_stays(animated, choose, qtbot, tmp_path):
+    mesh = tmp_path / "bad.obj"
+    mesh.write_text("this is no mesh\n")
+    (tmp_path / "bad.csv").write_text("marker,vertex\nring0,0\n")
+    choose(mesh)
+    count = animated.authoring.undo_stack.count()
+    animated.control.face.setCurrentIndex(animated.control.face.count() - 1)
+    animated.control.face.activated.emit(animated.control.face.count() - 1)
+    qtbot.waitUntil(lambda: "bad.obj" in animated.message.text, timeout=WAIT_MS)
+    assert animated.authoring.document.face is None
+    assert animated.control.face.currentData() is None
+    assert animated.authoring.undo_stack.count() == count
+
+
+def test_an_emotion_file_sets_its_spans_and_a_bad_line_is_named(animated, choose, qtbot, tmp_path):
+    good, bad = tmp_path / "good.txt", tmp_path / "bad.txt"
+    good.write_text("0 0.5 anger 0.5\n0.5 1 joy\n")
+    bad.write_text("0 0.5 envy\n")
+    choose(good, bad)
+    click(animated.control.open_emotions_button)
+    document = animated.authoring.document
+    assert [(m.emotion, m.intensity) for m in document.modifiers] == [("anger", 0.5), ("happiness", 1.0)]
+    assert animated.authoring.undo_stack.undoText() == "Set emotion to good.txt"
+    click(animated.control.open_emotions_button)
+    assert "bad.txt', line 1" in animated.message.text
+    assert len(document.modifiers) == 2
+    qtbot.waitUntil(idle(animated), timeout=WAIT_MS)
+
+
+def test_what_had_to_be_guessed_is_said_beside_the_transcript(open_window, choose, qtbot, speech_path, tmp_path):
+    (tmp_path / "hum.wav").write_bytes(speech_path.read_bytes())
+    (tmp_path / "hum.lab").write_text("0 0.1 pau\n0.1 1.0 ʙ\n1.0 1.1 pau\n", encoding="utf-8")
+    window = open_window()
+    choose(tmp_path / "hum.wav")
+    window.control.open_speech_action.trigger()
+    qtbot.waitUntil(lambda: window.authoring.document.speech is not None, timeout=WAIT_MS)
+    assert window.control.speech_warning.isVisible()
+    assert "ʙ" in window.control.speech_warning.whole_text
