@@ -21,6 +21,8 @@ from core.progress import Progress
 
 _SIZE_PX = (800, 600)
 _COMPOSE_AFTER_MS = 400
+# longer films are made when they are asked for: drawing takes about as long as the speech
+_LONGEST_UNASKED_S = 60.0
 
 
 class FilmComposer(QObject):
@@ -45,7 +47,7 @@ class FilmComposer(QObject):
         self._folder = tempfile.TemporaryDirectory(prefix="efase-films-", ignore_cleanup_errors=True)
         self._n_films = 0
         self._soon = QTimer(self, singleShot=True, interval=_COMPOSE_AFTER_MS)
-        self._soon.timeout.connect(self.compose)
+        self._soon.timeout.connect(self._compose_unasked)
 
     @property
     def fps(self) -> float:
@@ -95,6 +97,11 @@ class FilmComposer(QObject):
         )
         request = FilmRequest(answer.motion, speech.audio, speech.transcript, self._rig, settings, path)
         self._jobs.start("film", texts.COMPOSING, request, compose_apart, self._on_composed, self._on_failed)
+
+    def _compose_unasked(self) -> None:
+        speech = self._document.speech
+        if speech is not None and speech.transcript.duration_s <= _LONGEST_UNASKED_S:
+            self.compose()
 
     def save(self, path: Path) -> None:
         """Copy the film to ``path``."""

@@ -72,12 +72,15 @@ def _shows_everything(window) -> bool:
 
 
 def _application():
+    from PySide6.QtCore import QLoggingCategory
     from PySide6.QtGui import QGuiApplication, QSurfaceFormat
     from PySide6.QtWidgets import QApplication
 
     from app.settings import window_settings
     from app.theme import THEMES, apply_theme
 
+    # it reports each graphics library that a machine lacks; what goes wrong with a film is told in its pane
+    QLoggingCategory.setFilterRules("qt.multimedia*=false")
     shape = QSurfaceFormat()
     shape.setVersion(3, 3)
     shape.setProfile(QSurfaceFormat.OpenGLContextProfile.CoreProfile)

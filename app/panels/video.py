@@ -10,9 +10,11 @@ from app import texts
 from app.authoring import Authoring
 from app.panels.pane import Pane
 from app.panels.transport import Transport
-from app.theme import colour, theme
+from app.theme import colour
 
 _FOLLOW_MS = 60
+# what films are drawn on, in any theme
+FILM_GROUND = "#121316"
 
 
 class VideoView(QWidget):
@@ -41,7 +43,7 @@ class VideoView(QWidget):
     def paintEvent(self, _event) -> None:
         """Paint the frame."""
         painter = QPainter(self)
-        painter.fillRect(self.rect(), colour(theme().canvas))
+        painter.fillRect(self.rect(), colour(FILM_GROUND))
         if self._image is None:
             return
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
