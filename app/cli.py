@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from app.terminal import clear_failures, note, print_json, progress_bar, show_log
+from app.terminal import clear_failures, end_on_signals, note, print_json, progress_bar, show_log
 from core.errors import UserFacingError
 
 app = typer.Typer(
@@ -42,6 +42,7 @@ def window(
         from app.main import run_window
 
         raise typer.Exit(run_window())
+    end_on_signals()
 
 
 @app.command()
@@ -71,9 +72,11 @@ def build(
     json: Json = False,
 ) -> None:
     """Build a motion database from a corpus folder."""
+    from core.media.swap_in import check_target
     from core.motion.build import BuildSettings, build_database
     from core.motion.readers.corpus_folder import read_corpus
 
+    check_target(output, folders_are_made=True)
     began = time.perf_counter()
     with progress_bar("build") as progress:
         read = read_corpus(corpus, progress.part(0.0, 0.1))
@@ -111,10 +114,12 @@ def align(
 ) -> None:
     """Find when each word and phone is said."""
     from app.speech import load_speech
+    from core.media.swap_in import check_target
     from core.speech.textgrid import write_textgrid
 
     if output.suffix.lower() != ".textgrid":
         raise UserFacingError(f"'{output}' is not a name for a TextGrid.", "Let it end in .TextGrid.")
+    check_target(output)
     with progress_bar("align") as progress:
         speech = load_speech(audio, text, lexicon=lexicon, progress=progress)
     write_textgrid(speech.transcript, output)

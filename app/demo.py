@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
+import logging
 from importlib.resources import files
 from pathlib import Path
 
+from core.errors import UserFacingError
 from core.folders import cache_dir
+from core.media.swap_in import check_target
 from core.motion.corpus import Corpus
 from core.motion.database import VERSION, MotionDatabase, open_database
 from core.progress import SILENT, Progress
+
+# Versions of the workstation that are used side by side shall not throw out each other's database.
+_KEPT = 3
+log = logging.getLogger("database")
 
 
 def demo_database_path() -> Path:
@@ -33,14 +41,27 @@ def demo_corpus(progress: Progress = SILENT) -> Corpus:
 
 
 def demo_database(progress: Progress = SILENT) -> MotionDatabase:
-    """Open the demo database; the first time, perform the actress's corpus and build it (under a minute)."""
+    """Open the demo database; the first time, perform the actress's corpus and build it (under a minute).
+
+    A damaged one is made again. Raises `UserFacingError` when the cache folder cannot be written.
+    """
     path = demo_database_path()
     if path.is_file():
-        return open_database(path)
+        try:
+            return open_database(path)
+        except UserFacingError as error:
+            log.warning("%s It is made again.", error.message)
     from core.motion.build import build_database
 
+    try:
+        check_target(path, folders_are_made=True)
+    except UserFacingError as error:
+        raise UserFacingError(
+            f"The demo database cannot be kept in '{path.parent}'.",
+            "Let EFASE_CACHE_DIR name a folder that can be written, or name a database.",
+        ) from error
     database = build_database(demo_corpus(progress.part(0.0, 0.3)), path, progress=progress.part(0.3, 1.0))
-    for older in path.parent.glob("demo-*.h5"):
-        if older != path:
+    with contextlib.suppress(OSError):  # on Windows one may be open in another workstation
+        for older in sorted(path.parent.glob("demo-*.h5"), key=lambda p: p.stat().st_mtime)[:-_KEPT]:
             older.unlink(missing_ok=True)
     return database

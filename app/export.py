@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -11,6 +12,7 @@ from app.pictures import STYLES, FaceRig, frames
 from core.errors import UserFacingError
 from core.media.audio import Audio
 from core.media.picture import read_picture
+from core.media.swap_in import check_target
 from core.media.video import FRAME_RATES, n_video_frames, write_video
 from core.progress import SILENT, Progress
 from core.speech.loudness import levels_db
@@ -20,6 +22,7 @@ from core.synthesis.pose_tracks import PoseTracks
 
 VIDEO_SUFFIXES = (".avi", ".mp4")
 MARKER_SUFFIXES = (".csv", ".c3d")
+_PIXELS = re.compile("[0-9]{2,4}")
 
 
 @dataclass(frozen=True)
@@ -56,7 +59,7 @@ def frame_rate(name: str) -> Fraction:
 def video_size(text: str) -> tuple[int, int]:
     """Return (width, height) of ``640x480``; `UserFacingError` outside 64 to 4096 pixels."""
     width, _, height = text.lower().partition("x")
-    if not (width.isdecimal() and height.isdecimal() and all(64 <= int(n) <= 4096 for n in (width, height))):
+    if not all(_PIXELS.fullmatch(n) and 64 <= int(n) <= 4096 for n in (width, height)):
         raise UserFacingError(f"'{text}' is not a picture size.", "Write it as 640x480, each side 64 to 4096 pixels.")
     return int(width), int(height)
 
@@ -67,10 +70,7 @@ def check_outputs(paths: list[Path]) -> None:
         if path.suffix.lower() not in VIDEO_SUFFIXES + MARKER_SUFFIXES:
             known = ", ".join(VIDEO_SUFFIXES + MARKER_SUFFIXES)
             raise UserFacingError(f"'{path}' has no suffix that can be written.", f"Known are {known}.")
-        if not path.parent.is_dir():
-            raise UserFacingError(f"There is no folder '{path.parent}' to write '{path.name}' into.")
-        if path.is_dir():
-            raise UserFacingError(f"'{path}' is a folder.")
+        check_target(path)
 
 
 def export(

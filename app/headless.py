@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
+import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -16,6 +19,7 @@ from core.actress.corpus import demo_sentences, transcript_of
 from core.errors import UserFacingError
 from core.face.default_face import FaceUnavailable
 from core.media.audio import load_audio
+from core.media.swap_in import swapped_in
 from core.progress import SILENT, Progress
 from core.search.engine import SearchEngine, SpeechInput
 from core.speech.emotion import EmotionModifier
@@ -43,7 +47,7 @@ def write_demo(out: Path, progress: Progress = SILENT) -> dict[str, object]:
     try:
         rig = FaceRig.of("default", database.markers, progress=progress.part(0.2, 0.25))
     except FaceUnavailable as error:
-        notes.append(f"{error} Markers are drawn instead.")
+        notes.append(str(error))
         settings = VideoSettings(style="markers")
     outputs = []
     sentences = demo_sentences()
@@ -67,21 +71,51 @@ def write_demo(out: Path, progress: Progress = SILENT) -> dict[str, object]:
 
 def draw_window(path: Path) -> str:
     """Draw the real main window under a virtual screen; return a sentence about what went wrong, or nothing."""
-    command = [sys.executable, "-m", "app.main", "--picture", str(path)]
-    environment = dict(os.environ)
-    if not (os.environ.get("DISPLAY") or sys.platform in ("darwin", "win32")):
-        virtual = shutil.which("xvfb-run")
-        if virtual is None:
-            return "The window was not drawn: there is no display and no xvfb-run (Debian package xvfb)."
-        width, height = WINDOW_SIZE
-        command = [virtual, "-a", "-s", f"-screen 0 {width}x{height}x24", *command]
-        environment["QT_QPA_PLATFORM"] = "xcb"
-        environment.pop("WAYLAND_DISPLAY", None)
-    try:
-        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=_PICTURE_LIMIT_S)
-    except subprocess.TimeoutExpired:
-        return f"The window was not drawn within {_PICTURE_LIMIT_S} s."
-    if done.returncode or not path.is_file():
-        last = (done.stderr.strip().splitlines() or ["it said nothing"])[-1]
-        return f"The window was not drawn: {last}"
+    # all that the screen and the window leave behind, however they end, goes into a folder that is removed
+    with tempfile.TemporaryDirectory(prefix="efase-window-", ignore_cleanup_errors=True) as folder:
+        drawn = Path(folder) / "window.png"
+        command = [sys.executable, "-m", "app.main", "--picture", str(drawn)]
+        environment = {**os.environ, "TMPDIR": folder}
+        if not (os.environ.get("DISPLAY") or sys.platform in ("darwin", "win32")):
+            virtual = shutil.which("xvfb-run")
+            if virtual is None:
+                return "The window was not drawn: there is no display and no xvfb-run (Debian package xvfb)."
+            width, height = WINDOW_SIZE
+            command = [virtual, "-a", "-s", f"-screen 0 {width}x{height}x24", *command]
+            environment["QT_QPA_PLATFORM"] = "xcb"
+            environment.pop("WAYLAND_DISPLAY", None)
+        code, said = _run(command, environment)
+        if code is None:
+            return f"The window was not drawn within {_PICTURE_LIMIT_S} s."
+        if code or not drawn.is_file():
+            last = (said.strip().splitlines() or ["it said nothing"])[-1]
+            return f"The window was not drawn: {last}"
+        with swapped_in(path) as beside:
+            shutil.copyfile(drawn, beside)
     return ""
+
+
+def _run(command: list[str], environment: dict[str, str]) -> tuple[int | None, str]:
+    """Return exit code and standard error; no code when it took too long. None of its processes outlives the call."""
+    with subprocess.Popen(
+        command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace",
+        start_new_session=os.name == "posix",
+    ) as process:  # fmt: skip
+        try:
+            _, said = process.communicate(timeout=_PICTURE_LIMIT_S)
+        except subprocess.TimeoutExpired:
+            _end(process)
+            return None, ""
+        except BaseException:
+            _end(process)
+            raise
+        return process.returncode, said
+
+
+def _end(process: subprocess.Popen) -> None:
+    # xvfb-run would leave its server and the window running
+    if os.name == "posix":
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGTERM)
+    else:
+        process.kill()

@@ -8,6 +8,7 @@ from pathlib import Path
 from core.errors import UserFacingError
 from core.media.audio import Audio, load_audio
 from core.progress import SILENT, Progress
+from core.speech import text_file
 from core.speech.emotion import EmotionModifier, emotion_named
 from core.speech.transcript import Transcript
 
@@ -58,17 +59,12 @@ def load_speech(
 
 def read_text(text: str) -> str:
     """Return ``text``, or what the file of that name holds."""
+    path = Path(text)
     try:
-        path = Path(text)
-        if not path.is_file():
-            if path.suffix == ".txt":
-                raise UserFacingError(f"There is no text file at '{text}'.")
-            return text
-        return path.read_text(encoding="utf-8-sig")
-    except OSError:  # a sentence can be too long for a file name
-        return text
-    except UnicodeDecodeError as error:
-        raise UserFacingError(f"'{text}' is not a text file.") from error
+        is_name = path.suffix == ".txt" or path.is_file()
+    except (OSError, ValueError):  # a sentence can be too long for a file name
+        is_name = False
+    return text_file.read_text(path, "text file") if is_name else text
 
 
 def emotion_modifiers(emotion: str | None, file: Path | None, duration_s: float) -> list[EmotionModifier]:

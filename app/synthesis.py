@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import re
 import time
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -18,6 +20,7 @@ from core.search.engine import SearchAnswer, SearchEngine, SpeechInput
 from gpu.device import open_kernels
 
 ENGINES = ("search",)
+_SLOT = re.compile("[0-9]{1,9}")
 
 
 @dataclass(frozen=True)
@@ -46,6 +49,7 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
     if job.engine not in ENGINES:
         raise UserFacingError(f"There is no engine '{job.engine}'.", f"Choose one of {', '.join(ENGINES)}.")
     check_outputs(list(job.outputs))
+    _check_inputs(job)
     pins = _pins(job.pins)
     database = open_database(job.database) if job.database else demo_database(progress.part(0.0, 0.1))
     kernels, backend_sentence = open_kernels(job.backend)
@@ -60,12 +64,14 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
 
     began = time.perf_counter()
     warnings = list(speech.transcript.warnings)
+    if job.backend == "auto" and kernels.report.backend == "numpy":
+        warnings.append(backend_sentence)
     rig, video = None, job.video
     if video.style != "markers" and any(path.suffix.lower() in VIDEO_SUFFIXES for path in job.outputs):
         try:
             rig = FaceRig.of(job.face, database.markers, job.marker_file, progress.part(0.5, 0.55))
         except FaceUnavailable as error:
-            warnings.append(f"{error} Markers are drawn instead.")
+            warnings.append(str(error))
             video = replace(video, style="markers")
     for i, path in enumerate(job.outputs):
         share = 0.45 / len(job.outputs)
@@ -89,6 +95,17 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
     }
 
 
+def _check_inputs(job: SynthesisJob) -> None:
+    given = (job.audio, job.text, job.phones, job.database, job.emotions, job.marker_file, job.lexicon, job.face,
+             job.video.texture)  # fmt: skip
+    read = {os.path.realpath(path) for path in given if path is not None}
+    if job.marker_file is not None and not job.marker_file.is_file():
+        raise UserFacingError(f"There is no marker file '{job.marker_file}'.")
+    for path in job.outputs:
+        if os.path.realpath(path) in read:
+            raise UserFacingError(f"'{path}' is read and cannot be written at the same time.")
+
+
 def phoneme_rows(transcript, answer: SearchAnswer, nodes) -> list[dict[str, object]]:
     """Return one object a slot: what is said, which node says it, and what that costs."""
     path = answer.path
@@ -106,7 +123,7 @@ def _pins(texts: tuple[str, ...]) -> dict[int, str]:
     pins: dict[int, str] = {}
     for text in texts:
         slot, equals, node = text.partition("=")
-        if not equals or not slot.strip().isdecimal() or not node.strip():
+        if not equals or not _SLOT.fullmatch(slot.strip()) or not node.strip():
             raise UserFacingError(f"'{text}' is not a pin.", "Write it as SLOT=NODE, for instance 3=n04:12.")
         if int(slot) in pins:
             raise UserFacingError(f"Slot {int(slot)} is pinned twice.")

@@ -5,9 +5,12 @@ from __future__ import annotations
 import contextlib
 import json
 import logging
+import re
+import signal
 import sys
 import traceback
 from collections.abc import Iterator
+from typing import NoReturn
 
 from core.errors import UserFacingError
 from core.folders import cache_dir
@@ -16,6 +19,7 @@ from core.progress import Cancelled, Progress
 EXIT_USER_ERROR = 2
 EXIT_OUR_FAULT = 1
 EXIT_CANCELLED = 130
+_CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]+")
 
 
 class TerminalProgress(Progress):
@@ -43,18 +47,37 @@ def progress_bar(title: str) -> Iterator[Progress]:
 
 
 def note(sentence: str) -> None:
-    """Tell the user something on standard error."""
-    print(sentence, file=sys.stderr)
+    """Tell the user something on standard error, on one line whatever the files and names in it hold."""
+    print(_CONTROL.sub("\N{REPLACEMENT CHARACTER}", sentence), file=sys.stderr)
 
 
 def print_json(answer: dict) -> None:
     """Print the one object of ``--json``."""
-    print(json.dumps(answer, ensure_ascii=False, allow_nan=False))
+    text = json.dumps(answer, ensure_ascii=False, allow_nan=False)
+    try:
+        text.encode(sys.stdout.encoding)
+    except UnicodeEncodeError:  # a terminal without Unicode, or a file name that is none
+        text = json.dumps(answer, allow_nan=False)
+    print(text)
+
+
+def end_on_signals() -> None:
+    """Let a polite kill and a closed terminal end the work as Ctrl-C does: with nothing half-written left behind."""
+
+    def leave(number: int, _frame: object) -> None:
+        sys.exit(128 + number)
+
+    for name in ("SIGTERM", "SIGHUP"):  # Windows has no SIGHUP; under nohup it stays ignored
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) == signal.SIG_DFL:
+            signal.signal(number, leave)
 
 
 @contextlib.contextmanager
 def clear_failures() -> Iterator[None]:
     """Turn every failure into one sentence and an exit code: 2 for the user to mend, 1 for our own fault."""
+    if hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         yield
     except UserFacingError as error:
@@ -69,9 +92,19 @@ def clear_failures() -> Iterator[None]:
     except MemoryError:
         note("efase: there is not enough memory for this.")
         sys.exit(EXIT_USER_ERROR)
+    except OSError as error:
+        if error.strerror is None:
+            _exit_by_our_fault(error)
+        what = f"'{error.filename}' cannot be used" if error.filename else "the system refused"
+        note(f"efase: {what}: {error.strerror}.")
+        sys.exit(EXIT_USER_ERROR)
     except Exception as error:
-        note(f"efase: this should not have happened ({type(error).__name__}); {_written_down()}")
-        sys.exit(EXIT_OUR_FAULT)
+        _exit_by_our_fault(error)
+
+
+def _exit_by_our_fault(error: Exception) -> NoReturn:
+    note(f"efase: this should not have happened ({type(error).__name__}); {_written_down()}")
+    sys.exit(EXIT_OUR_FAULT)
 
 
 def _written_down() -> str:

@@ -190,13 +190,6 @@ class PhonemeMap:
             group.create_dataset(name, data=getattr(self, name))
         group.attrs.update(n_joined=self.n_joined, n_landmarks=self.n_landmarks, residual=self.residual_variance)
 
-    @classmethod
-    def read(cls, group) -> PhonemeMap:
-        """Inverse of `write`."""
-        arrays = (group[name][()] for name in ("frames", "embedding", "pca", "triangles"))
-        attrs = group.attrs
-        return cls(*arrays, int(attrs["n_joined"]), int(attrs["n_landmarks"]), float(attrs["residual"]))
-
 
 def delaunay_triangles(points: np.ndarray) -> np.ndarray:
     """Return Delaunay triangles of ``points``, shape (n, 2), as int32 (t, 3); none for fewer than 3 or on a line."""

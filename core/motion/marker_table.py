@@ -9,6 +9,7 @@ from pathlib import Path
 
 from core.errors import UserFacingError
 from core.motion.marker_set import LANDMARKS
+from core.speech.text_file import read_text
 
 
 @dataclass(frozen=True)
@@ -25,16 +26,18 @@ def read_marker_table(path: Path) -> MarkerTable:
 
     Raises `UserFacingError` naming the line of a bad row.
     """
-    try:
-        text = Path(path).read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise UserFacingError(f"The marker table '{path}' cannot be read.") from error
-    return parse_marker_table(text, str(path))
+    return parse_marker_table(read_text(path, "marker table"), str(path))
 
 
 def parse_marker_table(text: str, source: str) -> MarkerTable:
     """See `read_marker_table`; ``source`` names the text in messages."""
-    rows = csv.DictReader(line for line in io.StringIO(text) if not line.startswith("#"))
+    try:
+        return _table(csv.DictReader(line for line in io.StringIO(text) if not line.startswith("#")), source)
+    except csv.Error as error:
+        raise UserFacingError(f"The marker table '{source}' cannot be read as a table: {error}.") from error
+
+
+def _table(rows: csv.DictReader, source: str) -> MarkerTable:
     if "marker" not in (rows.fieldnames or ()):
         raise UserFacingError(f"The marker table '{source}' has no column 'marker' in its header.")
     kept: list[str] = []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -12,6 +13,7 @@ from core.speech.emotion import EMOTIONS
 from core.speech.phoneme import PAU, PHONEMES, VISEME_OF_PHONEME
 
 NIL = -1
+_ORDER = re.compile("[0-9]{1,9}")
 
 
 @dataclass(frozen=True)
@@ -88,7 +90,7 @@ class NodeTable:
     def row(self, name: str) -> int:
         """Return the row of a public name; raises `UserFacingError` when there is none."""
         sentence, _, order = name.rpartition(":")
-        if sentence in self.sentence_names and order.isdecimal():
+        if sentence in self.sentence_names and _ORDER.fullmatch(order):
             of_sentence = self.sentence == self.sentence_names.index(sentence)
             found = np.flatnonzero(of_sentence & (self.order == int(order)))
             if len(found):

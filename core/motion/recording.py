@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from core.speech.transcript import Transcript
+
+# At home in a file name on every system, in a node's name `sentence:order`, and in the database.
+_NAME = re.compile(r"(?!\.)[^\x00-\x1f\x7f/\\]{1,100}(?<!\.)")
+
+
+def is_sentence_name(name: str) -> bool:
+    """Whether a sentence can be called ``name``, whatever system its files travel to."""
+    return _NAME.fullmatch(name) is not None
 
 
 @dataclass(frozen=True)

@@ -173,6 +173,8 @@ def _transcript(placed: Sequence[HeardWord], words: Sequence[str], audio: Audio,
 
 def _check_fit(placed: Sequence[HeardWord], words: Sequence[str], audio: Audio) -> None:
     spoken_s = sum(word.duration_s for word in placed)
+    if spoken_s == 0:
+        raise UserFacingError(f"The text does not fit {audio.name}: it leaves no time for a word.", _REMEDY)
     mismatch = sum(word.mismatch * word.duration_s for word in placed) / spoken_s
     if mismatch > _WRONG_TEXT:
         worst = max(_doubtful_runs(placed), key=lambda run: run[-1].end_s - run[0].start_s)

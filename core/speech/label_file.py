@@ -13,6 +13,7 @@ _HTK_UNIT_S = 1e-7
 # Whole numbers as large as this are HTK's 100 ns: as seconds they would be hours.
 _SMALLEST_HTK_END = 10_000
 _COLUMNS = re.compile(r"[\s,;]+")
+_WHOLE = re.compile("[0-9]+")
 
 
 def parse_labels(text: str, name: str) -> list[TimedLabel]:
@@ -28,8 +29,8 @@ def parse_labels(text: str, name: str) -> list[TimedLabel]:
         return _xwaves(bare, bare.index("#") + 1, name)
     rows = list(_rows(bare, 0, name, "start end phone"))
     rows = [(place, columns) for place, columns in rows if columns[:2] != ["start", "end"]]
-    is_htk = all(column.isdigit() for _, columns in rows for column in columns[:2]) and any(
-        int(columns[1]) >= _SMALLEST_HTK_END for _, columns in rows
+    is_htk = all(_WHOLE.fullmatch(column) for _, columns in rows for column in columns[:2]) and any(
+        float(columns[1]) >= _SMALLEST_HTK_END for _, columns in rows
     )
     unit_s = _HTK_UNIT_S if is_htk else 1.0
     return [

@@ -11,6 +11,7 @@ _ONES = (
 _TENS = ("", "", "twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety")
 _SCALES = ((10**12, "trillion"), (10**9, "billion"), (10**6, "million"), (1000, "thousand"), (100, "hundred"))
 _LARGEST = 10**15
+_MOST_DIGITS = 100
 _IRREGULAR_ORDINALS = {
     "one": "first", "two": "second", "three": "third", "five": "fifth", "eight": "eighth", "nine": "ninth",
     "twelve": "twelfth",
@@ -39,6 +40,8 @@ def number_words(token: str) -> list[str] | None:
     if not number or not (number["whole"] or number["fraction"]):
         return None
     digits = (number["whole"] or "0").replace(",", "")
+    if len(digits) > _MOST_DIGITS:
+        return _one_by_one(digits)
     if number["currency"]:
         return _money(int(digits), number["fraction"], *_CURRENCIES[number["currency"]])
     if number["fraction"]:

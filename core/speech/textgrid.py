@@ -1,4 +1,10 @@
-"""Praat TextGrids, read as Praat reads them and written so that it can."""
+"""Praat TextGrids, read as Praat reads them and written so that it can.
+
+Parsing is written out here rather than left to praatio (6.2), which passes over the counts in a file: a TextGrid that
+was cut is read as a shorter one without a word. Of 4,000 damaged copies of two files it read 841 that are refused
+here, and raised bare IndexError or ValueError on 1,252. It also parts a tier at a label "IntervalTier" or "item [".
+The tests use it as a second opinion on sound files.
+"""
 
 from __future__ import annotations
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +14,10 @@ from core.motion.corpus import Corpus
 from core.motion.marker_table import MarkerTable, read_marker_table
 from core.motion.motion_files import read_motion
 from core.motion.readers.tracked_points import is_tracked_points_folder, read_tracked_points
-from core.motion.recording import Recording
+from core.motion.recording import Recording, is_sentence_name
 from core.progress import SILENT, Progress
 from core.speech.emotion import emotion_named
+from core.speech.text_file import read_text
 from core.speech.transcript_files import read_transcript
 
 _SUFFIXES = {
@@ -55,29 +57,35 @@ def read_corpus(folder: Path, progress: Progress = SILENT) -> Corpus:
 
 def _rows(index: Path) -> list[tuple[int, dict[str, str]]]:
     try:
-        with index.open(newline="", encoding="utf-8-sig") as file:
-            reader = csv.DictReader(file)
-            rows = [(reader.line_num, {k: (v or "").strip() for k, v in row.items() if k}) for row in reader]
-            columns = reader.fieldnames or ()
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        reader = csv.DictReader(io.StringIO(read_text(index, "list of sentences")))
+        rows = [(reader.line_num, {k: (v or "").strip() for k, v in row.items() if k}) for row in reader]
+        columns = reader.fieldnames or ()
+    except csv.Error as error:
         raise UserFacingError(f"'{index}' cannot be read as a table.") from error
     for column in ("sentence", "emotion"):
         if column not in columns:
             raise UserFacingError(f"'{index}' has no column '{column}' in its header.")
     if not rows:
         raise UserFacingError(f"'{index}' lists no sentence.")
+    lines: dict[str, int] = {}
+    for line, row in rows:
+        if lines.setdefault(row["sentence"], line) != line:
+            first = lines[row["sentence"]]
+            raise UserFacingError(f"Line {line} of '{index}': '{row['sentence']}' is already named in line {first}.")
     return rows
 
 
 def _recording(folder: Path, index: Path, line: int, row: dict[str, str]) -> Recording:
     sentence = row["sentence"]
-    if not sentence or "/" in sentence or sentence != sentence.strip("."):
+    if not is_sentence_name(sentence):
         raise UserFacingError(f"Line {line} of '{index}': '{sentence}' cannot be the name of a sentence.")
     try:
         emotion = emotion_named(row["emotion"])
         files = {kind: _find(folder, sentence, kind, row.get(kind, "")) for kind in _SUFFIXES}
     except UserFacingError as error:
         raise UserFacingError(f"Line {line} of '{index}': {error.message}", error.remedy) from error
+    except (OSError, RuntimeError) as error:  # a name too long for the system, links that run in a circle
+        raise UserFacingError(f"Line {line} of '{index}': the system cannot look up a file that it names.") from error
     positions, names, rate_hz = read_motion(files["motion"])
     audio = load_audio(files["audio"])
     transcript = read_transcript(files["transcript"], audio.duration_s)

@@ -17,13 +17,14 @@ from core.errors import UserFacingError
 from core.media.audio import load_audio
 from core.motion.corpus import Corpus
 from core.motion.marker_table import parse_marker_table
-from core.motion.recording import Recording
+from core.motion.recording import Recording, is_sentence_name
 from core.progress import SILENT, Progress
 from core.speech.transcript_files import read_transcript
 
 OUTER_EYE_MM = 90.0
 _MOST_BYTES = 1 << 30  # an hour of 148 points at 120 Hz is 384 MiB; more is refused before memory is asked for
-_ARRAYS = ("xyz64", "start", "clips", "landmark_index", "fps")
+_DIMS = {"xyz64": 3, "start": 1, "clips": 1, "landmark_index": 1, "fps": 0}
+_KINDS = {"xyz64": "iuf", "start": "iu", "clips": "U", "landmark_index": "iu", "fps": "iuf"}
 
 
 def is_tracked_points_folder(folder: Path) -> bool:
@@ -36,10 +37,17 @@ def read_tracked_points(folder: Path, progress: Progress = SILENT) -> Corpus:
     path = folder / "tracks.npz"
     arrays = _load(path)
     xyz = arrays["xyz64"]
+    if any(array.dtype.kind not in _KINDS[name] or array.ndim != _DIMS[name] for name, array in arrays.items()):
+        raise UserFacingError(f"The arrays of '{path}' are not of the kind that tracks are kept in.")
     start, clips = arrays["start"].astype(int), [str(clip) for clip in arrays["clips"]]
-    sane = xyz.ndim == 3 and xyz.shape[1:] == (len(arrays["landmark_index"]), 3) and len(start) == len(clips) + 1
+    sane = xyz.shape[1:] == (len(arrays["landmark_index"]), 3) and len(start) == len(clips) + 1
     if not sane or start[0] != 0 or start[-1] != len(xyz) or (np.diff(start) <= 0).any():
         raise UserFacingError(f"The arrays of '{path}' do not fit each other.")
+    if xyz.dtype.kind == "f" and np.isinf(xyz).any():
+        raise UserFacingError(f"'xyz64' in '{path}' holds infinite coordinates.")
+    unsafe = [clip for clip in clips if not is_sentence_name(clip)]
+    if unsafe:
+        raise UserFacingError(f"'{path}': '{unsafe[0][:40]}' cannot be the name of a sentence.")
     rate_hz = float(arrays["fps"])
     if not 5.0 <= rate_hz <= 1000.0:
         raise UserFacingError(f"'{path}' states {rate_hz} frames a second.")
@@ -67,12 +75,23 @@ def _load(path: Path) -> dict[str, np.ndarray]:
     try:
         # numpy leaves the file open when the archive is damaged, unless it is given an open one
         with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
-            missing = [name for name in _ARRAYS if name not in archive.files]
+            missing = [name for name in _DIMS if name not in archive.files]
             if missing:
                 raise UserFacingError(f"'{path}' has no array '{missing[0]}'.")
             oversized = [m.filename for m in archive.zip.infolist() if m.file_size > _MOST_BYTES]
             if oversized:
                 raise UserFacingError(f"'{oversized[0]}' in '{path}' is larger than {_MOST_BYTES >> 20} MiB.")
-            return {name: archive[name] for name in _ARRAYS}
-    except (OSError, ValueError, zipfile.BadZipFile, zlib.error, EOFError, KeyError, AttributeError) as error:
+            return {name: archive[name] for name in _DIMS}
+    except (
+        OSError,
+        ValueError,
+        zipfile.BadZipFile,
+        zlib.error,
+        EOFError,
+        KeyError,
+        AttributeError,
+        NotImplementedError,
+        RuntimeError,
+        MemoryError,
+    ) as error:
         raise UserFacingError(f"'{path}' is not a readable track file.") from error

@@ -1,4 +1,3 @@
-import csv
 from difflib import SequenceMatcher
 from itertools import pairwise
 from pathlib import Path
@@ -6,19 +5,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from core.actress.corpus import database_sentences, transcript_of
 from core.errors import UserFacingError
 from core.media.audio import Audio, load_audio, resampled
 from core.progress import Cancelled, Progress
 from core.speech.aligner import align, recognise
 from core.speech.spoken_words import spoken_words
-from core.speech.transcript_files import read_transcript
 
 REPOSITORY = Path(__file__).resolve().parents[3]
 DATA = REPOSITORY / "../shared/data"
 GRID = DATA / "grid-s1"
-DEMO = REPOSITORY / "resources/demo"
 needs_data = pytest.mark.skipif(not DATA.is_dir(), reason="the shared test data is not beside the repository")
-needs_demo = pytest.mark.skipif(not (DEMO / "sentences.csv").is_file(), reason="the demo corpus is not there")
 
 
 def grid_clip(clip):
@@ -54,17 +51,12 @@ def test_words_start_where_the_grid_corpus_says():
     assert np.mean(np.abs(errors_s) < 0.1) > 0.9
 
 
-@needs_demo
 def test_phones_stand_where_festival_put_them():
     """Festival made this speech, so its labels are the truth about it."""
     errors_s, total = [], 0
-    with (DEMO / "sentences.csv").open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))[::9]
-    for row in rows:
-        audio = load_audio(DEMO / f"audio/{row['sentence']}.flac")
-        labels = read_transcript(DEMO / f"labels/{row['sentence']}.lab", audio.duration_s)
-        truth = [u for u in labels.phonemes if u.phone != "pau"]
-        ours = [u for u in align(audio, row["text"]).phonemes if u.phone != "pau"]
+    for spoken in database_sentences()[::30]:
+        truth = [u for u in transcript_of(spoken).phonemes if u.phone != "pau"]
+        ours = [u for u in align(load_audio(spoken.audio), spoken.text).phonemes if u.phone != "pau"]
         total += len(truth)
         matcher = SequenceMatcher(None, [u.phone for u in ours], [u.phone for u in truth], autojunk=False)
         for a, b, size in matcher.get_matching_blocks():
