@@ -13,7 +13,7 @@ from core.progress import SILENT, Progress
 from core.search.best_path import MotionPath, find_path
 from core.search.compute import SearchKernels
 from core.search.constraints import SearchRequest
-from core.search.relaxation import find_path_by_relaxation
+from core.search.solve import solve
 from core.search.terms import TransitionTerms
 from core.search.transitions import TransitionCosts
 from core.search.weights import SearchWeights
@@ -79,11 +79,15 @@ class SearchEngine:
 
     def prepare(self, progress: Progress = SILENT) -> None:
         """Price all transitions, once, and hand them to the compute backend if it is to see them all."""
+        self.costs.prepare(progress)
+        if self.exhaustive:
+            self._prepared_kernels()
+
+    def _prepared_kernels(self) -> SearchKernels:
         if not self._is_prepared:
-            self.costs.prepare(progress)
-            if self.exhaustive:
-                self.kernels.prepare(self.costs.matrix)
+            self.kernels.prepare(self.costs.matrix)
             self._is_prepared = True
+        return self.kernels
 
     def request(self, speech: SpeechInput) -> SearchRequest:
         """Translate names to rows; raises `UserFacingError` for a node that the database does not have."""
@@ -103,9 +107,9 @@ class SearchEngine:
         began = time.perf_counter()
         stage = progress.part(0.5, 0.9)
         if self.exhaustive:
-            path = find_path(request, self.costs, self.kernels, stage)
+            path = find_path(request, self.costs, self._prepared_kernels(), stage)
         else:
-            path = find_path_by_relaxation(request, self.costs, stage)
+            path = solve(request, self.costs, self._prepared_kernels, stage)
         searched = time.perf_counter()
         slots = SlotFrames.of(
             [u.start_s for u in speech.transcript.phonemes],

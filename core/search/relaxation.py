@@ -18,6 +18,7 @@ do it.
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -69,11 +70,13 @@ def find_path_by_relaxation(
     progress: Progress = SILENT,
     limit_s: float = np.inf,
     on_round: Callable[[Round], None] = lambda _: None,
-) -> MotionPath:
+    most_pairs: float = np.inf,
+) -> MotionPath | None:
     """Find the path of least COST (equation 4 of Deng and Neumann 2008) that satisfies ``request``.
 
     The answer equals that of `core.search.best_path.find_path`, ties included, and carries the bound that proves it.
-    After ``limit_s`` seconds the best path so far is returned with the bound reached so far.
+    After ``limit_s`` seconds the best path so far is returned with the bound reached so far; None when the lattice
+    would hold more than ``most_pairs`` transitions, as when a sentence is full of phonemes that the database lacks.
     Raises `UserFacingError` when the request cannot be satisfied.
     """
     nodes, weights = costs.terms.nodes, costs.weights
@@ -83,6 +86,8 @@ def find_path_by_relaxation(
     if not costs.is_held:
         _thin_out_silences(slots, costs)
     while True:
+        if sum(len(b.active) * len(a.active) for b, a in itertools.pairwise(slots)) > most_pairs:
+            return None
         for p, slot in enumerate(slots):
             if p and slot.arriving is None:
                 slot.arriving = costs.block(slot.active, slots[p - 1].active)

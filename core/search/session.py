@@ -12,7 +12,7 @@ from core.progress import SILENT, Progress
 from core.search.best_path import MotionPath
 from core.search.compute import SearchKernels
 from core.search.constraints import SearchRequest, check_feasible
-from core.search.relaxation import find_path_by_relaxation
+from core.search.solve import solve
 from core.search.tables import SearchTables
 from core.search.transitions import TransitionCosts
 
@@ -31,7 +31,8 @@ class SearchSession:
     """The current best path of one utterance, and the price of every alternative.
 
     `update` answers an edit; `refresh` renews the tables that prices are read from, which takes one pass over the
-    transition matrix a slot, and may run later. An answer never depends on a stale table.
+    transition matrix a slot, and may run later. An answer never depends on a stale table. The kernels must have been
+    prepared with the matrix of the transition costs.
     """
 
     def __init__(self, request: SearchRequest, costs: TransitionCosts, kernels: SearchKernels) -> None:
@@ -39,7 +40,7 @@ class SearchSession:
         self._kernels = kernels
         self._tables: SearchTables | None = None
         self.request = request
-        self.path = find_path_by_relaxation(request, costs)
+        self.path = self._solve()
 
     def update(self, request: SearchRequest) -> MotionPath:
         """Answer an edited request; raises `UserFacingError`, leaving everything as it was, when it is infeasible.
@@ -78,12 +79,15 @@ class SearchSession:
             path = tables.best()
             if path is not None:
                 return path
-        return find_path_by_relaxation(self.request, self._costs)
+        return self._solve()
+
+    def _solve(self) -> MotionPath:
+        return solve(self.request, self._costs, lambda: self._kernels)
 
     def reweight(self) -> MotionPath:
         """Answer again after the weights of the transition costs were changed (and the kernels prepared anew)."""
         self._tables = None
-        self.path = find_path_by_relaxation(self.request, self._costs)
+        self.path = self._solve()
         return self.path
 
     @property
@@ -92,7 +96,7 @@ class SearchSession:
         return self._tables is not None and self._tables.is_whole
 
     def refresh(self, progress: Progress = SILENT) -> None:
-        """Make the tables whole; the kernels must have been prepared with the matrix of the transition costs."""
+        """Make the tables whole."""
         if self._tables is None:
             self._tables = SearchTables(self.request, self._costs, self._kernels)
         self._tables.refresh(progress)
