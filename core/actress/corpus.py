@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from core.actress.capture import capture, head_motion, markers_of
 from core.actress.expression import manners
+from core.actress.faults import PlantedFault, contaminate, plant
 from core.actress.labels import read_transcripts
-from core.actress.performance import bundled_marker_units, frame_times_s, perform
+from core.actress.performance import bundled_marker_units, frame_times_s, gaze, perform
 from core.actress.randomness import Chance
 from core.actress.texts import DEMO_FOLDER, bundled_lines
 from core.motion.marker_set import MarkerSet
@@ -73,19 +77,63 @@ def kept_markers() -> tuple[str, ...]:
     return actress_marker_set().names
 
 
+@dataclass(frozen=True)
+class Performance:
+    """All that the actress does in one sentence, before any marker is seen.
+
+    activations : float64, shape (n_frames, n_units), 0..1, columns as ``bundled_marker_units().names``
+    gaze_deg : float64, shape (n_frames, 2), of the eyes in the head: yaw (her left), pitch (up)
+    head_rotation, head_shift_mm : of the head on the stage, see `core.actress.capture.head_motion`
+    """
+
+    transcript: Transcript
+    activations: np.ndarray
+    gaze_deg: np.ndarray
+    head_rotation: np.ndarray
+    head_shift_mm: np.ndarray
+
+
+def perform_details(spoken: SpokenSentence, rate_hz: float = RATE_HZ) -> Performance:
+    """Let the actress speak one sentence; the tracks that markers do not show are only here."""
+    transcript = transcript_of(spoken)
+    times_s = frame_times_s(transcript.duration_s, rate_hz)
+    turns, shifts_mm = head_motion(transcript, manners()[spoken.emotion], times_s, Chance(f"{spoken.sentence} head"))
+    return Performance(
+        transcript,
+        perform(transcript, spoken.emotion, spoken.sentence, rate_hz),
+        gaze(transcript, spoken.emotion, spoken.sentence, rate_hz),
+        turns,
+        shifts_mm,
+    )
+
+
+@cache
+def planted_faults() -> tuple[PlantedFault, ...]:
+    """Return which motion nodes of the database's recordings are contaminated on purpose, and how.
+
+    This list is for measuring detectors; no recording and no database holds it.
+    """
+    transcripts = {spoken.sentence: transcript_of(spoken) for spoken in database_sentences()}
+    return plant(transcripts, actress_marker_set())
+
+
 def record(spoken: SpokenSentence, rate_hz: float = RATE_HZ) -> Recording:
-    """Let the actress speak one sentence on the capture stage; all her markers, in stage space, with noise and gaps.
+    """Let the actress speak one sentence on the capture stage; all her markers, in stage space, as a studio gets them:
+
+    with noise, gaps and the faults of `planted_faults`.
 
     The same sentence gives the same bytes every time.
     """
     units = bundled_marker_units()
-    transcript = transcript_of(spoken)
-    activations = perform(transcript, spoken.emotion, spoken.sentence, rate_hz)
-    times_s = frame_times_s(transcript.duration_s, rate_hz)
-    turns, shifts_mm = head_motion(transcript, manners()[spoken.emotion], times_s, Chance(f"{spoken.sentence} head"))
-    positions = capture(markers_of(activations, units), turns, shifts_mm, Chance(f"{spoken.sentence} capture"))
+    names = units.markers.names
+    done = perform_details(spoken, rate_hz)
+    face = markers_of(done.activations, units)
+    chance = Chance(f"{spoken.sentence} capture")
+    positions = capture(face, done.head_rotation, done.head_shift_mm, chance)
+    faults = [fault for fault in planted_faults() if fault.sentence == spoken.sentence]
+    positions = contaminate(positions, names, rate_hz, faults)
     return Recording(
-        spoken.sentence, spoken.emotion, positions, units.markers.names, rate_hz, transcript, spoken.text, spoken.audio
+        spoken.sentence, spoken.emotion, positions, names, rate_hz, done.transcript, spoken.text, spoken.audio
     )
 
 

@@ -22,8 +22,12 @@ ACCENT_LEAD_S = 0.06
 BLINK_CLOSE_S, BLINK_SHUT_S, BLINK_OPEN_S = 0.09, 0.025, 0.17
 
 LEFT_RIGHT_VARIATION = 0.07
-STRENGTH_VARIATION = 0.10
-DRIFT = 0.08
+# No face holds a feeling still: it differs from one utterance to the next, swells and fades within one (never quite
+# to nothing, never beyond what the skin bears), and its parts do not all follow.
+STRENGTH_VARIATION = 0.18
+SWELL, SWELL_HZ = 0.42, (0.15, 0.9)
+INTENSITY_LIMITS = (0.12, 1.25)
+PART_DRIFT = 0.15
 
 
 @dataclass(frozen=True)
@@ -33,6 +37,9 @@ class Manner:
     effort: float
     pace: float
     seconds_between_blinks: float
+    look_s: float
+    away_share: float
+    gaze_down_deg: float
     nod_deg: float
     sway_deg: float
     pitch_deg: float
@@ -80,32 +87,49 @@ def expression(
     """
     units = np.zeros((len(times_s), len(unit_names)))
     accent = accent_course(transcript, times_s)
-    strength = 1 + STRENGTH_VARIATION * float(chance.normal(1)[0])
+    intensity = intensity_course(times_s, chance)
     for row in _expression_rows():
         if row["emotion"] != emotion:
             continue
-        level = float(row["level"]) * strength
+        course = float(row["level"]) * intensity
         if row["kind"] == "accent":
-            course = level * accent * chance.between(0.6, 1.1)
+            course *= accent * chance.between(0.6, 1.1)
         else:
-            course = level * (1 + DRIFT * chance.drift(times_s, 0.1, 0.6))
+            course *= 1 + PART_DRIFT * chance.drift(times_s, *SWELL_HZ)
         for u, name in enumerate(unit_names):
             if name in (row["unit"], row["unit"] + "Left", row["unit"] + "Right"):
                 units[:, u] += course * (1 + LEFT_RIGHT_VARIATION * float(chance.normal(1)[0]))
     return units
 
 
-def blink_course(times_s: np.ndarray, seconds_between: float, chance: Chance) -> np.ndarray:
-    """Return how far the lids are closed over time, 0..1; float64, shape (n_frames,).
+def intensity_course(times_s: np.ndarray, chance: Chance) -> np.ndarray:
+    """Return how strongly an emotion is felt over one utterance, 1 on average; float64, shape (n_frames,)."""
+    strength = 1 + STRENGTH_VARIATION * float(chance.normal(1)[0])
+    low, high = INTENSITY_LIMITS
+    wave = strength * (1 + SWELL * chance.drift(times_s, *SWELL_HZ))
+    # a smooth clip: the limits are approached, not hit
+    middle, half = (high + low) / 2, (high - low) / 2
+    return middle + half * np.tanh((wave - middle) / half)
 
-    Lids fall faster than they rise. The first blink may come at any time within the first interval.
-    """
-    closed = np.zeros(len(times_s))
-    end_s = times_s[-1] if len(times_s) else 0.0
+
+def blink_times_s(end_s: float, seconds_between: float, chance: Chance) -> np.ndarray:
+    """Return when blinks begin before ``end_s``; the first may come at any time within the first interval."""
+    begin_s = []
     at_s = chance.between(0.15, seconds_between)
     while at_s < end_s:
+        begin_s.append(at_s)
+        at_s += seconds_between * chance.between(0.6, 1.5)
+    return np.array(begin_s)
+
+
+def blink_course(times_s: np.ndarray, begin_s: np.ndarray) -> np.ndarray:
+    """Return how far the lids are closed over time, 0..1; float64, shape (n_frames,). They fall faster than they rise.
+
+    begin_s : times at which the lids begin to fall
+    """
+    closed = np.zeros(len(times_s))
+    for at_s in begin_s:
         falling = np.clip((times_s - at_s) / BLINK_CLOSE_S, 0, 1)
         rising = np.clip((times_s - at_s - BLINK_CLOSE_S - BLINK_SHUT_S) / BLINK_OPEN_S, 0, 1)
         closed = np.maximum(closed, 0.5 * (np.cos(np.pi * rising) - np.cos(np.pi * falling)))
-        at_s += seconds_between * chance.between(0.6, 1.5)
     return closed

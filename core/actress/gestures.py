@@ -15,12 +15,17 @@ import numpy as np
 
 from core.actress.randomness import Chance
 from core.actress.texts import DEMO_FOLDER
+from core.speech.phoneme import PAU
 from core.speech.transcript import PhonemeUtterance, Transcript
 
 # Activation rises and falls over this time; a step would make the acceleration jump.
 RAMP_S = 0.03
+# Sealing lips takes this time, however hurried the phone.
+SEAL_S = 0.1
 # A weak pull to rest that is always there; alone it decides only where no gesture is active.
 REST_STRENGTH = 0.05
+# The table's name of the silence after all speech, before which no breath is taken.
+END = "end"
 # How much one utterance of a phone differs from the next.
 TARGET_VARIATION = 0.06
 TIMING_VARIATION_S = 0.006
@@ -53,6 +58,11 @@ class Gesture:
     begin: float
     end: float
 
+    @property
+    def seals(self) -> bool:
+        """Whether the lips are to meet for good: the target lies beyond their contact."""
+        return self.variable == "closure" and self.target > 1.1
+
 
 @dataclass(frozen=True)
 class GestureScore:
@@ -80,7 +90,7 @@ def tract_variables() -> tuple[TractVariable, ...]:
 
 @cache
 def gestures_of_phones() -> dict[str, tuple[Gesture, ...]]:
-    """Return the gestures of every phone."""
+    """Return the gestures of every phone, and of `END`."""
     table: dict[str, list[Gesture]] = {}
     with open(DEMO_FOLDER / "gestures.csv", encoding="utf-8", newline="") as lines:
         for row in csv.DictReader(lines):
@@ -105,8 +115,9 @@ def gesture_score(
     weight = np.full((len(times_s), len(variables)), REST_STRENGTH)
     targets = weight * [variable.rest for variable in variables]
     stiffness = weight * [variable.stiffness_rad_s for variable in variables]
-    for utterance in transcript.phonemes:
-        for gesture in gestures_of_phones()[utterance.phone]:
+    for p, utterance in enumerate(transcript.phonemes):
+        last = p + 1 == len(transcript.phonemes)
+        for gesture in gestures_of_phones()[END if last and utterance.phone == PAU else utterance.phone]:
             i = index[gesture.variable]
             reach = effort if variables[i].follows_effort else 1.0
             vary, shift = chance.normal(2)
@@ -119,11 +130,11 @@ def gesture_score(
 
 
 def _activation(gesture: Gesture, utterance: PhonemeUtterance, shift_s: float, times_s: np.ndarray) -> np.ndarray:
-    """Return 0..1 over time: smooth on and off, never shorter than its own ramps."""
+    """Return 0..1 over time: smooth on and off, never shorter than its ramps or, for a seal, `SEAL_S`."""
     duration_s = utterance.end_s - utterance.start_s
     on_s = utterance.start_s + gesture.begin * duration_s - gesture.lead_s + shift_s
     off_s = utterance.start_s + gesture.end * duration_s + gesture.lag_s + shift_s
-    off_s = max(off_s, on_s + RAMP_S)
+    off_s = max(off_s, on_s + (SEAL_S if gesture.seals else RAMP_S))
     rise = np.clip((times_s - on_s) / RAMP_S + 0.5, 0, 1)
     fall = np.clip((off_s - times_s) / RAMP_S + 0.5, 0, 1)
     return _smoothstep(rise) * _smoothstep(fall)

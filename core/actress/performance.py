@@ -6,9 +6,11 @@ import math
 from functools import cache
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 
 from core.actress.dynamics import follow
-from core.actress.expression import blink_course, expression, manners
+from core.actress.expression import blink_course, blink_times_s, expression, manners
+from core.actress.gaze import gaze_course
 from core.actress.gestures import gesture_score, tract_variables
 from core.actress.randomness import Chance
 from core.face.marker_units import MarkerUnits, load_marker_units
@@ -17,6 +19,8 @@ from core.speech.transcript import Transcript
 # Articulators are moved in steps no longer than this.
 LONGEST_STEP_S = 1 / 240
 EFFORT_VARIATION = 0.05
+# Skin and muscle do not follow what moves them at once: above some 20 Hz nothing of a face moves.
+TISSUE_S = 0.008
 # A smile gives way to lip rounding by this share.
 SMILE_YIELDS = 0.45
 # Lips that meet give a little: over this distance, and over this share of their way.
@@ -56,13 +60,30 @@ def perform(transcript: Transcript, emotion: str, seed: str, rate_hz: float = 12
             continue
         for unit, weight in variable.units.items():
             units[:, column[unit]] += weight * variables[variable.name]
-    blink = blink_course(times_s, manner.seconds_between_blinks, Chance(f"{seed} blinks"))
+    blink = blink_course(times_s, blinks_of(transcript, emotion, seed))
     for side in ("Left", "Right"):
         lid = column[f"eyeBlink{side}"]
         units[:, lid] += blink * (1 - units[:, lid])
     units = np.clip(units, 0, 1)
-    _meet_lips(units, _soft_contact(variables["closure"]), column)
+    _meet_lips(units, variables["closure"], column)
     return np.clip(units, 0, 1)
+
+
+def blinks_of(transcript: Transcript, emotion: str, seed: str) -> np.ndarray:
+    """Return when the blinks of a performance begin, in seconds; float64."""
+    return blink_times_s(transcript.duration_s, manners()[emotion].seconds_between_blinks, Chance(f"{seed} blinks"))
+
+
+def gaze(transcript: Transcript, emotion: str, seed: str, rate_hz: float = 120.0) -> np.ndarray:
+    """Return where the eyes of a performance look; float64, shape (n_frames, 2), degrees: yaw (her left), pitch (up).
+
+    The angles are those of the eyes in the head. ``seed`` as in `perform`.
+    """
+    manner = manners()[emotion]
+    times_s = frame_times_s(transcript.duration_s, rate_hz)
+    blinks_s = blinks_of(transcript, emotion, seed)
+    chance = Chance(f"{seed} gaze")
+    return gaze_course(times_s, manner.look_s, manner.away_share, manner.gaze_down_deg, blinks_s, chance)
 
 
 def _articulate(
@@ -70,11 +91,16 @@ def _articulate(
 ) -> dict[str, np.ndarray]:
     substeps = max(1, math.ceil(1 / rate_hz / LONGEST_STEP_S - 1e-9))
     step_s = 1 / (rate_hz * substeps)
-    fine_s = np.arange(len(times_s) * substeps) * step_s
+    # beyond the last frame, so that smoothing has something to look at there
+    margin = math.ceil(4 * TISSUE_S / step_s)
+    fine_s = np.arange(len(times_s) * substeps + margin) * step_s
     effort *= 1 + EFFORT_VARIATION * float(chance.normal(1)[0])
     score = gesture_score(transcript, fine_s, effort, pace, chance)
-    path = follow(score, step_s, start=score.targets[0])[::substeps]
-    return {variable.name: path[:, i] for i, variable in enumerate(tract_variables())}
+    path = follow(score, step_s, start=score.targets[0])
+    index = {variable.name: i for i, variable in enumerate(tract_variables())}
+    path[:, index["closure"]] = _soft_contact(path[:, index["closure"]])
+    path = gaussian_filter1d(path, TISSUE_S / step_s, axis=0, mode="nearest")[::substeps][: len(times_s)]
+    return {name: path[:, i] for name, i in index.items()}
 
 
 def _soft_contact(closure: np.ndarray) -> np.ndarray:

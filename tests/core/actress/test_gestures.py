@@ -3,7 +3,7 @@ import csv
 import numpy as np
 import pytest
 
-from core.actress.gestures import gesture_score, gestures_of_phones, tract_variables
+from core.actress.gestures import END, gesture_score, gestures_of_phones, tract_variables
 from core.actress.performance import bundled_marker_units
 from core.actress.randomness import Chance
 from core.actress.texts import DEMO_FOLDER
@@ -30,7 +30,7 @@ def _column(name):
 
 
 def test_every_phoneme_has_gestures_and_every_row_a_reason():
-    assert set(gestures_of_phones()) == set(PHONEMES)
+    assert set(gestures_of_phones()) == {*PHONEMES, END}
     for table in ("gestures", "variables", "expressions", "manners", "voices"):
         with open(DEMO_FOLDER / f"{table}.csv", encoding="utf-8", newline="") as lines:
             for row in csv.DictReader(lines):
