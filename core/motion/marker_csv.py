@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -107,16 +108,20 @@ def _numbers(lines: list[str], n_columns: int, delimiter: str, path: Path) -> np
         if len(cells) != n_columns:
             raise UserFacingError(f"'{path}', line {f + 2}: {len(cells)} cells; the header has {n_columns}.")
         try:
-            rows[f] = [float(cell) if cell and not cell.isspace() else np.nan for cell in cells]
+            rows[f] = [_number(cell) for cell in cells]
         except ValueError as error:
             wrong = next(cell for cell in cells if not _is_number(cell))
             raise UserFacingError(f"'{path}', line {f + 2}: '{wrong.strip()[:40]}' is not a number.") from error
     return rows
 
 
+def _number(cell: str) -> float:
+    return float(cell) if cell and not cell.isspace() else math.nan
+
+
 def _is_number(cell: str) -> bool:
     try:
-        float(cell.strip() or "nan")
+        _number(cell)
     except ValueError:
         return False
     return True

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import signal
+import subprocess
 import sys
+import time
 
 import av
 import numpy as np
@@ -11,9 +14,13 @@ import pytest
 import soundfile
 
 from app import cli
-from app.demo import demo_database
+from app.demo import demo_database, demo_database_path
 from core.actress.corpus import demo_sentences
+from core.errors import UserFacingError
+from core.motion.corpus import Corpus
 from core.motion.motion_files import read_motion, write_c3d
+from core.motion.recording import Recording
+from core.speech.transcript import PhonemeUtterance, Transcript
 
 
 @pytest.fixture(scope="session")
@@ -266,6 +273,139 @@ def test_bad_corpora_are_one_sentence_and_leave_nothing(efase, tmp_path):
     ):
         (folder / "corpus.csv").write_text(text)
         assert refused(), text
+
+
+def test_a_corpus_with_names_that_cannot_be_is_refused_line_by_line(efase, tmp_path):
+    folder = tmp_path / "corpus"
+    folder.mkdir()
+    corpus_folder(folder, moving_markers())
+    (folder / "loop").symlink_to("loop")
+    for text, says in (
+        ("sentence,emotion\none,neutral\none,neutral\n", "Line 3"),
+        ("sentence,emotion\n.one,neutral\n", "Line 2"),
+        ("sentence,emotion\na\\b,neutral\n", "Line 2"),
+        ('sentence,emotion\n"a\nb",neutral\n', "cannot be the name"),
+        (f"sentence,emotion\n{'x' * 300},neutral\n", "cannot be the name"),
+        ("sentence,emotion,audio\none,neutral,loop\n", "Line 2"),
+        (f"sentence,emotion,audio\none,neutral,{'x' * 300}\n", "Line 2"),
+        (f"sentence,emotion\n{'x' * 200_000},neutral\n", "cannot be read as a table"),
+        ("\0" * 30, "corpus.csv"),
+    ):
+        (folder / "corpus.csv").write_text(text)
+        code, out, err = efase("build", folder, "-o", tmp_path / "made.h5")
+        assert (code, out) == (2, "") and one_sentence(err) and says in err, (text[:40], err)
+
+
+def test_extreme_requests_are_one_sentence_each(efase, demo, tmp_path):
+    sentence = spoken()
+    blink = tmp_path / "blink.wav"
+    soundfile.write(blink, np.random.default_rng(0).normal(size=960) * 0.1, 16_000)
+    given = tmp_path / "given.csv"
+    given.write_bytes(sentence.phone_labels.read_bytes())
+    phones = ["--phones", sentence.phone_labels]
+    long, target = "9" * 5000, ["-o", tmp_path / "x.csv"]
+    for words in (
+        ["synth", sentence.audio, *phones, *target, "--size", f"{long}x64"],
+        ["synth", sentence.audio, *phones, *target, "--pin", f"{long}=n01:3"],
+        ["synth", sentence.audio, *phones, *target, "--pin", f"3=n01:{long}"],
+        ["synth", f"{long}.wav", *phones, *target],
+        ["synth", sentence.audio, "--phones", long, *target],
+        ["synth", sentence.audio, "--text", long, *target],
+        ["synth", blink, "--text", "a", *target],
+        ["synth", sentence.audio, *phones, "-o", tmp_path / f"{long}.csv"],
+        ["synth", sentence.audio, *phones, "-o", tmp_path],
+        ["synth", sentence.audio, "--phones", given, "-o", given],
+        ["synth", sentence.audio, *phones, *target, "--markers", tmp_path],
+        ["align", sentence.audio, "--text", "hello", "-o", tmp_path / "none" / "x.TextGrid"],
+        ["build", tmp_path, "-o", tmp_path],
+        ["info", long],
+        ["info", "two\nlines \x1b[31mred"],
+        ["demo", "--out", blink],
+    ):
+        code, out, err = efase(*words)
+        assert (code, out) == (2, ""), (words[:2], err)
+        assert one_sentence(err) and "\x1b" not in err, (words[:2], err)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["blink.wav", "given.csv"]
+
+
+def test_a_file_name_that_is_no_text_comes_back_in_json(efase, demo, tmp_path):
+    sentence = spoken()
+    target = tmp_path / "o\udcff.csv"
+    code, out, _ = efase("synth", sentence.audio, "--phones", sentence.phone_labels, "-o", target, "--json")
+    assert code == 0
+    assert json.loads(out)["outputs"] == [str(target)]
+
+
+def test_without_opencl_numpy_does_the_work_and_says_so(efase, demo, tmp_path, monkeypatch):
+    def missing():
+        raise UserFacingError("There is no OpenCL driver.")
+
+    monkeypatch.setattr("gpu.device._open_opencl", missing)
+    sentence = spoken()
+    words = ["synth", sentence.audio, "--phones", sentence.phone_labels, "-o", tmp_path / "x.csv"]
+    code, out, err = efase(*words)
+    assert code == 0 and one_sentence(err) and "numpy" in err
+    code, out, err = efase(*words, "--backend", "opencl")
+    assert (code, out) == (2, "") and one_sentence(err)
+
+
+@pytest.fixture
+def quick_demo(monkeypatch, tmp_path):
+    """The demo database of a corpus that is built in a second, in a cache of its own."""
+    monkeypatch.setenv("EFASE_CACHE_DIR", str(tmp_path / "cache"))
+    positions = moving_markers()
+    said = [PhonemeUtterance(p, 0.5 * i, 0.5 * i + 0.5) for i, p in enumerate(("pau", "n", "ow", "pau"))]
+    names = tuple(f"m{k}" for k in range(positions.shape[1]))
+    recording = Recording("one", "neutral", positions, names, 60.0, Transcript(tuple(said), (), 2.0))
+    monkeypatch.setattr("app.demo.demo_corpus", lambda progress: Corpus("quick", [recording], names))
+    return demo_database_path()
+
+
+def test_a_damaged_demo_database_is_made_again(efase, quick_demo):
+    assert efase("info", "--json")[0] == 0
+    whole = quick_demo.read_bytes()
+    quick_demo.write_bytes(whole[: len(whole) // 2])
+    code, out, _ = efase("info", "--json")
+    assert code == 0 and json.loads(out)["nodes"] == 2
+    assert [p.name for p in quick_demo.parent.iterdir()] == [quick_demo.name]
+
+
+def test_a_cache_that_cannot_be_written_is_one_sentence_with_a_remedy(efase, quick_demo):
+    quick_demo.parent.write_text("a file where the folder should be")
+    code, out, err = efase("info")
+    assert (code, out) == (2, "") and one_sentence(err) and "EFASE_CACHE_DIR" in err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no polite kill")
+@pytest.mark.parametrize(("number", "expected"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
+def test_a_kill_in_the_middle_leaves_nothing_behind(tmp_path, demo, number, expected):
+    noise = np.random.default_rng(0).normal(size=16_000 * 60).astype(np.float32) * 0.1
+    speech, phones = tmp_path / "long.wav", tmp_path / "long.lab"
+    soundfile.write(speech, noise, 16_000)
+    phones.write_text("0 1 pau\n1 2 aa\n2 60 pau\n")
+    folder = tmp_path / "out"
+    folder.mkdir()
+    command = [
+        sys.executable,
+        "-c",
+        "from app.cli import main; main()",
+        "synth",
+        speech,
+        "--phones",
+        phones,
+        "-o",
+        folder / "a.avi",
+    ]
+    command += ["--style", "markers", "--fps", "60"]
+    with subprocess.Popen(list(map(str, command)), stderr=subprocess.PIPE, text=True) as process:
+        until = time.monotonic() + 60
+        while not any(folder.iterdir()) and time.monotonic() < until and process.poll() is None:
+            time.sleep(0.02)
+        process.send_signal(number)
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == expected
+    assert "Traceback" not in err
+    assert list(folder.iterdir()) == []
 
 
 def test_our_own_fault_is_a_sentence_too(efase, monkeypatch, tmp_path):
