@@ -26,7 +26,7 @@ LEFT_RIGHT_VARIATION = 0.07
 # to nothing, never beyond what the skin bears), and its parts do not all follow.
 STRENGTH_VARIATION = 0.18
 SWELL, SWELL_HZ = 0.42, (0.15, 0.9)
-INTENSITY_LIMITS = (0.12, 1.25)
+INTENSITY_LIMITS = (0.3, 1.3)
 PART_DRIFT = 0.15
 
 
