@@ -34,7 +34,7 @@ from core.actress.performance import bundled_marker_units, perform
 from core.errors import UserFacingError
 from core.speech.transcript import Transcript
 
-# Once in eight clips; a median of fewer has an error of the size of the tolerance.
+# Once in eight clips. At 40 the check would take in ao, dh and hh, which miss: docs/demo-corpus.md says why.
 ENOUGH = 50
 TOLERANCE = 0.25
 # Beside stored figures she speaks like sentences, not the same ones: medians shift with the neighbours that
