@@ -219,7 +219,8 @@ def write_database(database: MotionDatabase, path: Path, audio: Mapping[str, byt
     """Store ``database`` and the FLAC sound of its sentences at ``path``; raises `OSError` if the disk refuses."""
     import h5py
 
-    with h5py.File(path, "w", libver=("v110", "v110")) as file:
+    # made in memory, for HDF5 ends the process when a disk fills up under it
+    with h5py.File("database", "w", driver="core", backing_store=False, libver=("v110", "v110")) as file:
         file.attrs.update(
             format=FORMAT, version_major=VERSION[0], version_minor=VERSION[1], name=database.name,
             synthetic=database.synthetic, rate_hz=database.rate_hz, content_hash=database.content_hash,
@@ -242,6 +243,9 @@ def write_database(database: MotionDatabase, path: Path, audio: Mapping[str, byt
             phoneme_map.write(file.create_group(f"maps/{phone}"))
         for sentence, flac in audio.items():
             file.create_dataset(f"audio/{sentence}", data=np.frombuffer(flac, np.uint8))
+        file.flush()
+        image = file.id.get_file_image()
+    path.write_bytes(image)
 
 
 def _weights(values: object) -> SearchWeights:

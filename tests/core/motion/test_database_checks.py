@@ -5,6 +5,8 @@ from __future__ import annotations
 import copy
 import json
 import shutil
+import subprocess
+import sys
 
 import h5py
 import numpy as np
@@ -147,6 +149,21 @@ def test_attributes_that_make_no_sense_are_refused(altered):
         ("version_major", np.inf), ("format", b"\xff"),
     ):  # fmt: skip
         assert altered(lambda file, name=name, value=value: file.attrs.__setitem__(name, value)) is None, (name, value)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows limits no file")
+def test_a_disk_that_fills_up_is_one_sentence_and_leaves_nothing(sound, tmp_path):
+    database, target = open_database(sound), tmp_path / "full.h5"
+    code = (
+        "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (5000, 5000))\n"
+        "import sys; from pathlib import Path; from core.media.swap_in import swapped_in\n"
+        "from core.motion.database import open_database, write_database\n"
+        "with swapped_in(sys.argv[2]) as beside: write_database(open_database(Path(sys.argv[1])), beside, {})\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code, str(database.path), str(target)], capture_output=True, text=True)
+    assert done.returncode == 1
+    assert "UserFacingError" in done.stderr.strip().splitlines()[-1] and "File too large" in done.stderr
+    assert list(tmp_path.iterdir()) == []
 
 
 def search(path):
