@@ -16,7 +16,10 @@ _SETTLE_MS = 600
 
 
 def run_window(project_or_audio: Path | None = None) -> int:
-    """Open the window and stay until it is closed; returns the exit code."""
+    """Open the window and stay until it is closed; returns the exit code.
+
+    Raises `UserFacingError` when there is no display.
+    """
     app = _application()
     window = _window()
     _tell_unexpected(window)
@@ -76,9 +79,12 @@ def _application():
     from PySide6.QtGui import QGuiApplication, QSurfaceFormat
     from PySide6.QtWidgets import QApplication
 
+    from app.display import require_display
     from app.settings import window_settings
     from app.theme import THEMES, apply_theme
 
+    if QApplication.instance() is None:
+        require_display()
     # it reports each graphics library that a machine lacks; what goes wrong with a film is told in its pane
     QLoggingCategory.setFilterRules("qt.multimedia*=false")
     shape = QSurfaceFormat()
