@@ -75,8 +75,9 @@ def find_path_by_relaxation(
     """Find the path of least COST (equation 4 of Deng and Neumann 2008) that satisfies ``request``.
 
     The answer equals that of `core.search.best_path.find_path`, ties included, and carries the bound that proves it.
-    After ``limit_s`` seconds the best path so far is returned with the bound reached so far; None when the lattice
-    would hold more than ``most_pairs`` transitions, as when a sentence is full of phonemes that the database lacks.
+    After ``limit_s`` seconds, or when the lattice would come to hold more than ``most_pairs`` transitions, the best
+    path so far is returned with the bound reached so far; None when already the first lattice would, as when a sentence
+    is full of phonemes that the database lacks.
     Raises `UserFacingError` when the request cannot be satisfied.
     """
     nodes, weights = costs.terms.nodes, costs.weights
@@ -85,21 +86,22 @@ def find_path_by_relaxation(
     slots = [_first_active(slot_costs(request, p, nodes, weights), weights.pnt) for p in range(request.n_slots)]
     if not costs.is_held:
         _thin_out_silences(slots, costs)
+    best, lower_bound = None, 0.0
     while True:
         if sum(len(b.active) * len(a.active) for b, a in itertools.pairwise(slots)) > most_pairs:
-            return None
+            return None if best is None else priced(best, request, costs, lower_bound)
         for p, slot in enumerate(slots):
             if p and slot.arriving is None:
                 slot.arriving = costs.block(slot.active, slots[p - 1].active)
             progress.step(min(0.9, (time.perf_counter() - began) / max(limit_s, 1.0)), "searching motion nodes")
         solved = _solve(slots)
-        upper = float(solved.real[-1].min())
+        best, upper = _trace_back(slots, solved.real), float(solved.real[-1].min())
+        lower_bound = max(lower_bound, solved.lower_bound)
         seconds = time.perf_counter() - began
-        on_round(Round(seconds, solved.lower_bound, upper, sum(len(slot.active) for slot in slots)))
+        on_round(Round(seconds, lower_bound, upper, sum(len(slot.active) for slot in slots)))
         complete = not _examine(slots, solved, upper, costs)
         if complete or seconds > limit_s:
-            path = _trace_back(slots, solved.real)
-            return priced(path, request, costs, None if complete else solved.lower_bound)
+            return priced(best, request, costs, None if complete else lower_bound)
 
 
 def _first_active(local: np.ndarray, pnt: float) -> _Slot:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from core.errors import UserFacingError
 from core.progress import SILENT, Progress
 from core.search.best_path import MotionPath, find_path
 from core.search.compute import SearchKernels
@@ -13,6 +14,8 @@ from core.search.transitions import TransitionCosts
 
 # Gathering one transition for the relaxation takes some fifty times as long as reading it in a pass over the matrix.
 _WIDEST_LATTICE = 0.02
+# Without a matrix the lattice is all there is: 2 GiB of it, and three times as much while it is solved for a moment.
+_MOST_PAIRS = 2**29
 
 
 def solve(
@@ -24,11 +27,19 @@ def solve(
     """Find the best path by relaxation, or exhaustively where the relaxation would look at much of the matrix anyway.
 
     kernels : gives a compute backend that was prepared with the matrix of ``costs``; asked only when it is needed
-    Beyond the memory budget there is no matrix, and the relaxation has no limit. Raises `UserFacingError` when the
-    request cannot be satisfied.
+    Beyond the memory budget there is no matrix, and the relaxation goes on as long as its lattice stays within a budget
+    of its own; the answer is then the best path that it found, with the bound that it reached. Raises `UserFacingError`
+    when the request cannot be satisfied, or the database is too large for it.
     """
+    if not costs.is_held:
+        path = find_path_by_relaxation(request, costs, progress, most_pairs=_MOST_PAIRS)
+        if path is None:
+            raise UserFacingError(
+                f"A database of {len(costs.terms.nodes)} motion nodes is too large for this sentence.",
+                "Pin some of its phonemes, or build a smaller database.",
+            )
+        return path
     all_pairs = request.n_slots * float(len(costs.terms.nodes)) ** 2
     # a small lattice is quick however much of a small matrix it is
-    most_pairs = max(_WIDEST_LATTICE * all_pairs, 1e7) if costs.is_held else float("inf")
-    path = find_path_by_relaxation(request, costs, progress, most_pairs=most_pairs)
-    return path if path is not None else find_path(request, costs, kernels(), progress)
+    path = find_path_by_relaxation(request, costs, progress, most_pairs=max(_WIDEST_LATTICE * all_pairs, 1e7))
+    return path if path is not None and path.is_optimal else find_path(request, costs, kernels(), progress)
