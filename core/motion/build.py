@@ -19,7 +19,7 @@ from core.motion.node import NodeTable, NodeTableBuilder
 from core.motion.normalise import HeadMotion, normalise
 from core.motion.pca import MotionPca
 from core.motion.recording import Recording
-from core.motion.resample import fill_gaps, resample
+from core.motion.resample import fill_gaps, frame_bounds, resample
 from core.motion.rest_pose import choose_rest_pose
 from core.progress import SILENT, Progress
 from core.search.terms import default_weights
@@ -146,11 +146,6 @@ def _process(
     # sound may run on after the capture has ended: those frames would be made up
     masked_now |= np.arange(n_frames) / settings.rate_hz > (len(masked) + 1) / recording.rate_hz
     return _Processed(recording, raised[:, :-7].reshape(n_frames, len(markers), 3), head, masked_now, n_filled)
-
-
-def frame_bounds(starts_s: np.ndarray, ends_s: np.ndarray, rate_hz: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return first and one-past-last frame of each span, rounded so that neighbours share their boundary."""
-    return np.rint(np.asarray(starts_s) * rate_hz).astype(int), np.rint(np.asarray(ends_s) * rate_hz).astype(int)
 
 
 def _assemble(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.ndimage import gaussian_filter1d
@@ -30,6 +32,12 @@ def resample(values: np.ndarray, rate_hz: float, new_rate_hz: float, n_frames: i
         columns = [np.interp(times, old, column) for column in flat.T]
         return np.stack(columns, axis=1).reshape(n_frames, *values.shape[1:])
     return CubicSpline(np.arange(len(values)) / rate_hz, values, axis=0, bc_type="natural")(times)
+
+
+def frame_bounds(starts_s: Sequence[float], ends_s: Sequence[float], rate_hz: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return first and one-past-last frame of each span, rounded so that neighbours share their boundary."""
+    start, stop = (np.rint(np.asarray(times_s, float) * rate_hz).astype(int) for times_s in (starts_s, ends_s))
+    return start, stop
 
 
 def fill_gaps(positions: np.ndarray, longest_frames: int) -> tuple[np.ndarray, int, np.ndarray]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.motion.node import NodeTable
+from core.motion.resample import frame_bounds
 from core.search.terms import warp_matrix
 
 
@@ -30,8 +31,7 @@ class SlotFrames:
     @classmethod
     def of(cls, starts_s: Sequence[float], ends_s: Sequence[float], rate_hz: float) -> SlotFrames:
         """Round the boundaries of contiguous slots, in seconds from 0, to frames; one frame at least in all."""
-        start = np.rint(np.asarray(starts_s, float) * rate_hz).astype(int)
-        stop = np.rint(np.asarray(ends_s, float) * rate_hz).astype(int)
+        start, stop = frame_bounds(starts_s, ends_s, rate_hz)
         stop[-1] = max(stop[-1], 1)
         return cls(start, stop)
 
