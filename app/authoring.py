@@ -30,10 +30,11 @@ from core.document.view_state import ViewState
 from core.errors import UserFacingError
 from core.media.audio import Audio
 from core.progress import Progress
-from core.search.engine import SearchAnswer, SearchEngine, SpeechInput
+from core.search.engine import SearchAnswer, SearchEngine
 from core.speech.emotion import EmotionModifier
 from core.speech.loudness import levels_db
 from core.speech.phoneme import PAU
+from core.synthesis.engine import SpeechInput
 from core.synthesis.pose_tracks import PoseTracks
 
 

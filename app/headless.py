@@ -21,8 +21,9 @@ from core.face.default_face import FaceUnavailable
 from core.media.audio import load_audio
 from core.media.swap_in import swapped_in
 from core.progress import SILENT, Progress
-from core.search.engine import SearchEngine, SpeechInput
+from core.search.engine import SearchEngine
 from core.speech.emotion import EmotionModifier
+from core.synthesis.engine import SpeechInput
 from gpu.device import open_kernels
 
 WINDOW_SIZE = (1600, 1000)

@@ -16,7 +16,8 @@ from core.errors import UserFacingError
 from core.face.default_face import FaceUnavailable
 from core.motion.database import open_database
 from core.progress import SILENT, Progress
-from core.search.engine import SearchAnswer, SearchEngine, SpeechInput
+from core.search.engine import SearchAnswer, SearchEngine
+from core.synthesis.engine import SpeechInput
 from gpu.device import open_kernels
 
 ENGINES = ("search",)

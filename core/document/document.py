@@ -12,9 +12,10 @@ from psygnal import Signal
 from core.document.change import NOTHING, Change
 from core.media.audio import Audio
 from core.motion.database import MotionDatabase
-from core.search.engine import SearchAnswer, SpeechInput
+from core.search.engine import SearchAnswer
 from core.speech.emotion import EmotionModifier
 from core.speech.transcript import Transcript
+from core.synthesis.engine import SpeechInput
 
 
 class AlignedSpeech(Protocol):

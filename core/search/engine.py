@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,29 +16,13 @@ from core.search.solve import solve
 from core.search.terms import TransitionTerms
 from core.search.transitions import TransitionCosts
 from core.search.weights import SearchWeights
-from core.speech.emotion import EmotionModifier, emotion_weights
+from core.speech.emotion import emotion_weights
 from core.speech.phoneme import PHONEME_INDEX
-from core.speech.transcript import Transcript
 from core.synthesis.concatenate import SlotFrames, concatenate
+from core.synthesis.engine import SpeechInput
 from core.synthesis.marker_motion import MarkerMotion
 from core.synthesis.silence import regenerate_silence
 from core.synthesis.smoothing import smooth_joins
-
-
-@dataclass(frozen=True)
-class SpeechInput:
-    """What an engine animates.
-
-    transcript : aligned phonemes
-    modifiers : emotion spans (soft)
-    pins : slot to public node name (hard); only the search knows them
-    removed : public names of nodes that must not be used
-    """
-
-    transcript: Transcript
-    modifiers: Sequence[EmotionModifier] = ()
-    pins: Mapping[int, str] = field(default_factory=dict)
-    removed: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)

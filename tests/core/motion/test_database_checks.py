@@ -18,8 +18,9 @@ from core.motion.corpus import Corpus
 from core.motion.database import open_database
 from core.motion.recording import Recording
 from core.search.compute import NumpyKernels
-from core.search.engine import SearchEngine, SpeechInput
+from core.search.engine import SearchEngine
 from core.speech.transcript import PhonemeUtterance, Transcript
+from core.synthesis.engine import SpeechInput
 
 SPEECH = Transcript.covering(
     [PhonemeUtterance(p, 0.1 * i, 0.1 * i + 0.1) for i, p in enumerate(("n", "ow", "zh"))], [], 0.5
