@@ -19,7 +19,7 @@ from app.panels.message_bar import MessageBar
 from app.panels.motion import MotionPane
 from app.panels.preview import PreviewPane
 from app.panels.status import StatusLine
-from app.panels.timeline import Timeline
+from app.panels.timeline.timeline import Timeline
 from app.panels.video import VideoPane
 from app.settings import last_folder, remember_folder, window_settings
 from core.document.change import Change

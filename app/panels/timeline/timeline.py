@@ -8,16 +8,9 @@ from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
 
 from app import texts
 from app.authoring import Authoring
-from app.panels.lanes import (
-    Peaks,
-    TimeScale,
-    paint_boxes,
-    paint_emotions,
-    paint_playhead,
-    paint_ruler,
-    paint_selection,
-    paint_wave,
-)
+from app.panels.timeline.lanes import TimeScale, paint_boxes, paint_emotions, paint_playhead, paint_selection
+from app.panels.timeline.ruler import Ruler, paint_ruler
+from app.panels.timeline.wave import Peaks, paint_wave
 from app.theme import STEP, colour, small_font, theme
 from core.document.change import Change
 from core.media.audio import Audio
@@ -167,7 +160,7 @@ class Timeline(QWidget):
         if view.slot is not None:
             chosen = transcript.phonemes[view.slot]
             paint_selection(painter, area, scale.x(chosen.start_s), scale.x(chosen.end_s))
-        paint_ruler(painter, lanes["ruler"], scale, self.duration_s)
+        paint_ruler(painter, lanes["ruler"], scale, self.duration_s, Ruler())
         if self._peaks is not None:
             paint_wave(painter, lanes["wave"], scale, self._peaks, self.duration_s)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.panels.lanes import Peaks, TimeScale
+from app.panels.timeline.lanes import TimeScale
+from app.panels.timeline.wave import Peaks
 from core.media.audio import Audio
 
 
