@@ -69,9 +69,14 @@ def build(
     corpus: Annotated[Path, typer.Argument(help="Corpus folder; its layout is described in docs/corpus.md.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="Motion database to write (.h5).")],
     dims: Annotated[int, typer.Option(min=2, max=300, help="PCA dimensions.")] = 25,
+    held_out: Annotated[
+        bool, typer.Option("--hold-out", help="Keep a sixth of the sentences out, to tune and to test on.")
+    ] = False,
+    split: Annotated[str | None, typer.Option(help="Hold out by sentences, letters or digits.")] = None,
     json: Json = False,
 ) -> None:
     """Build a motion database from a corpus folder."""
+    from core.evaluation.split import hold_out
     from core.media.swap_in import check_target
     from core.motion.build import BuildSettings, build_database
     from core.motion.readers.corpus_folder import read_corpus
@@ -80,6 +85,8 @@ def build(
     began = time.perf_counter()
     with progress_bar("build") as progress:
         read = read_corpus(corpus, progress.part(0.0, 0.1))
+        if held_out or split is not None:
+            read = hold_out(read, split or "sentences")
         database = build_database(read, output, BuildSettings(n_dims=dims), progress.part(0.1, 1.0))
     summary = {**database.summary(), "seconds_to_build": round(time.perf_counter() - began, 2)}
     if json:

@@ -32,12 +32,15 @@ def demo_database_path() -> Path:
 
 
 def demo_corpus(progress: Progress = SILENT) -> Corpus:
-    """Let the synthetic actress perform her corpus."""
-    from core.actress.corpus import CORPUS_NAME, actress_marker_set, recordings
+    """Let the synthetic actress perform her corpus, and the sentences that are held out to tune and to compare on."""
+    from core.actress import corpus as actress
 
-    markers = actress_marker_set()
-    return Corpus(CORPUS_NAME, recordings(progress), markers.names, markers.groups, markers.landmarks,
-                  rest=markers.rest, synthetic=True)  # fmt: skip
+    markers = actress.actress_marker_set()
+    held_out = {"tune": actress.tuning_sentences(), "test": actress.comparison_sentences()}
+    names = {split: tuple(spoken.sentence for spoken in sentences) for split, sentences in held_out.items()}
+    apart = [actress.record(spoken) for split in held_out.values() for spoken in split]
+    return Corpus(actress.CORPUS_NAME, actress.recordings(progress) + apart, markers.names, markers.groups,
+                  markers.landmarks, rest=markers.rest, synthetic=True, held_out=names)  # fmt: skip
 
 
 def demo_database(progress: Progress = SILENT) -> MotionDatabase:

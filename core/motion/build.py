@@ -12,14 +12,16 @@ from scipy.spatial.transform import Rotation
 from core.errors import UserFacingError
 from core.manifold.isomap import PhonemeMap
 from core.media.swap_in import swapped_in
+from core.motion.captured_sentence import CapturedSentence
 from core.motion.corpus import Corpus
-from core.motion.database import CapturedSentence, MotionDatabase, write_database
+from core.motion.database import MotionDatabase, write_database
+from core.motion.head_space import LONGEST_GAP_S, in_head_space
 from core.motion.marker_set import MarkerSet
 from core.motion.node import NodeTable, NodeTableBuilder
-from core.motion.normalise import HeadMotion, normalise
+from core.motion.normalise import HeadMotion
 from core.motion.pca import MotionPca
 from core.motion.recording import Recording
-from core.motion.resample import fill_gaps, frame_bounds, resample
+from core.motion.resample import frame_bounds, resample
 from core.motion.rest_pose import choose_rest_pose
 from core.progress import SILENT, Progress
 from core.search.terms import default_weights
@@ -38,7 +40,7 @@ class BuildSettings:
 
     rate_hz: float = 120.0
     n_dims: int = 25
-    longest_gap_s: float = 0.1
+    longest_gap_s: float = LONGEST_GAP_S
 
 
 @dataclass
@@ -57,31 +59,36 @@ def build_database(
 ) -> MotionDatabase:
     """Build the motion database of ``corpus`` and store it at ``path``.
 
-    The file is written beside ``path`` and swapped in at the end, so that a cut leaves what was there before.
-    Raises `UserFacingError` when the corpus has no usable sentence or the target cannot be written.
+    Sentences that the corpus holds out lie in the file as they were captured, and take no part in rest pose, principal
+    components, nodes, maps and weights. The file is written beside ``path`` and swapped in at the end, so that a cut
+    leaves what was there before. Raises `UserFacingError` when the corpus has no usable sentence or the target cannot
+    be written.
     """
     settings = settings or BuildSettings()
     _check_corpus(corpus)
     path = Path(path)
+    apart = {name for names in corpus.held_out.values() for name in names}
+    held_out = [r for r in corpus.recordings if r.sentence in apart]
+    seen = replace(corpus, recordings=[r for r in corpus.recordings if r.sentence not in apart])
     columns = np.array([corpus.recordings[0].marker_names.index(name) for name in corpus.kept_markers])
-    markers, rigid, origin = _marker_set(corpus, columns)
+    markers = _marker_set(seen, columns)
 
     processed = []
-    n = len(corpus.recordings)
-    for s, recording in enumerate(corpus.recordings):
+    n = len(seen.recordings)
+    for s, recording in enumerate(seen.recordings):
         progress.step(0.25 * s / n, f"normalising {recording.sentence}")
-        processed.append(_process(recording, columns, markers, rigid, origin, corpus.with_scale, settings))
+        processed.append(_process(recording, markers, corpus.with_scale, settings))
 
     progress.step(0.25, "fitting principal components")
     pca = MotionPca.fit((p.face[~p.masked] for p in processed), settings.n_dims)
-    database = _assemble(corpus, settings, markers, pca, processed)
+    database = _assemble(seen, settings, markers, pca, processed)
     if len(database.nodes) == 0:
         raise UserFacingError(f"The corpus '{corpus.name}' has no phoneme with motion, so there is nothing to search.")
     maps = make_maps(database, progress.part(0.3, 0.95))
     database = replace(database, maps=maps, weights=default_weights(database.frames, database.nodes, database.rate_hz))
     progress.step(0.95, "writing the database")
     audio = {r.sentence: _flac(r) for r in corpus.recordings if r.audio is not None}
-    return _store(database, path, audio)
+    return _store(database, path, audio, held_out)
 
 
 def _check_corpus(corpus: Corpus) -> None:
@@ -99,13 +106,18 @@ def _check_corpus(corpus: Corpus) -> None:
                 f"'{first.sentence}'.",
                 "All sentences of one database need the same markers in the same order.",
             )
+    strangers = [name for held in corpus.held_out.values() for name in held if name not in names]
+    if strangers:
+        raise UserFacingError(f"The corpus '{corpus.name}' has no sentence '{strangers[0]}' to hold out.")
+    if len({name for held in corpus.held_out.values() for name in held}) == len(names):
+        raise UserFacingError(f"All sentences of the corpus '{corpus.name}' are held out, so nothing is left to build.")
     missing = [name for name in corpus.kept_markers if name not in first.marker_names]
     if missing:
         raise UserFacingError(f"The captures of '{corpus.name}' have no marker '{missing[0]}', which the list keeps.")
 
 
-def _marker_set(corpus: Corpus, columns: np.ndarray) -> tuple[MarkerSet, np.ndarray, int | None]:
-    """Return the marker set with its rest pose, and the rows that normalisation stands on."""
+def _marker_set(corpus: Corpus, columns: np.ndarray) -> MarkerSet:
+    """Return the marker set with its rest pose."""
     names = corpus.kept_markers
     groups = {g: tuple(m for m in members if m in names) for g, members in corpus.groups.items()}
     landmarks = {anatomy: marker for anatomy, marker in corpus.landmarks.items() if marker in names}
@@ -126,16 +138,12 @@ def _marker_set(corpus: Corpus, columns: np.ndarray) -> tuple[MarkerSet, np.ndar
     if corpus.outer_eye_mm is not None:
         corners = [row[landmarks[name]] for name in ("outer_eye_left", "outer_eye_right")]
         rest = rest * (corpus.outer_eye_mm / np.linalg.norm(rest[corners[0]] - rest[corners[1]]))
-    return MarkerSet(names, rest, groups, landmarks), rigid, origin
+    return MarkerSet(names, rest, groups, landmarks)
 
 
-def _process(
-    recording: Recording, columns: np.ndarray, markers: MarkerSet, rigid: np.ndarray, origin: int | None,
-    with_scale: bool, settings: BuildSettings,
-) -> _Processed:  # fmt: skip
-    positions = np.asarray(recording.positions, float)[:, columns]
-    whole, n_filled, masked = fill_gaps(positions, round(settings.longest_gap_s * recording.rate_hz))
-    face, head = normalise(whole, markers.rest, rigid, origin, with_scale)
+def _process(recording: Recording, markers: MarkerSet, with_scale: bool, settings: BuildSettings) -> _Processed:
+    captured = in_head_space(recording, markers, with_scale, settings.longest_gap_s)
+    face, head, masked = captured.face, captured.head, captured.masked
     n_frames = max(1, round(recording.transcript.duration_s * settings.rate_hz))
     turn = Rotation.from_matrix(head.rotation).as_rotvec()
     tracks = np.concatenate([face.reshape(len(face), -1), turn, head.translation, head.scale[:, None]], axis=1)
@@ -145,7 +153,7 @@ def _process(
     masked_now = masked[np.floor(nearest).astype(int)] | masked[np.ceil(nearest).astype(int)]
     # sound may run on after the capture has ended: those frames would be made up
     masked_now |= np.arange(n_frames) / settings.rate_hz > (len(masked) + 1) / recording.rate_hz
-    return _Processed(recording, raised[:, :-7].reshape(n_frames, len(markers), 3), head, masked_now, n_filled)
+    return _Processed(recording, raised[:, :-7].reshape(n_frames, len(markers), 3), head, masked_now, captured.n_filled)
 
 
 def _assemble(
@@ -178,7 +186,8 @@ def _assemble(
     return MotionDatabase(
         name=corpus.name, synthetic=corpus.synthetic, rate_hz=settings.rate_hz, markers=markers, pca=pca,
         frames=frames, head_rotation=turns, head_translation=moves, nodes=nodes, sentences=tuple(sentences), maps={},
-        weights=None, content_hash=_content_hash(markers, pca, frames, nodes), held_out=corpus.held_out, report=report,
+        weights=None, content_hash=_content_hash(markers, pca, frames, nodes), with_scale=corpus.with_scale,
+        held_out=corpus.held_out, report=report,
     )  # fmt: skip
 
 
@@ -227,11 +236,11 @@ def _flac(recording: Recording) -> bytes:
     return encode_flac(load_audio(recording.audio))
 
 
-def _store(database: MotionDatabase, path: Path, audio: dict[str, bytes]) -> MotionDatabase:
+def _store(database: MotionDatabase, path: Path, audio: dict[str, bytes], held_out: list[Recording]) -> MotionDatabase:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise UserFacingError(f"The folder '{path.parent}' cannot be made: {error.strerror}.") from error
     with swapped_in(path) as beside:
-        write_database(database, beside, audio)
+        write_database(database, beside, audio, held_out)
     return replace(database, path=path)

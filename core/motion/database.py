@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import logging
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -14,43 +15,33 @@ import numpy as np
 
 from core.errors import UserFacingError
 from core.manifold.isomap import PhonemeMap
+from core.motion.captured_sentence import CapturedSentence
 from core.motion.database_checks import (
     Unsound,
+    check_held_out,
     check_map,
     check_motion,
     check_nodes,
     check_sentences,
-    check_spoken,
     plain_json,
     stored,
     stored_text,
 )
+from core.motion.held_out import read_held_out, write_held_out
 from core.motion.marker_set import MarkerSet
 from core.motion.node import NodeTable
 from core.motion.pca import MotionPca
+from core.motion.recording import Recording
 from core.search.weights import SearchWeights
-from core.speech.transcript import PhonemeUtterance, Transcript, WordUtterance
 
 FORMAT = "efase-motion-database"
-VERSION = (1, 0)
+VERSION = (1, 1)  # 1.1: held-out recordings, and whether each frame was scaled
 REMAKE = "Remake it with `efase build`, or open another one."
 # Whatever h5py, numpy and json raise for files that were cut, overwritten or made up.
 _DAMAGE = (OSError, KeyError, ValueError, IndexError, TypeError, AttributeError, ArithmeticError, RuntimeError,
            MemoryError)  # fmt: skip
 _MAP = {"frames": np.int64, "embedding": np.float32, "pca": np.float32, "triangles": np.int32}
 log = logging.getLogger("database")
-
-
-@dataclass(frozen=True)
-class CapturedSentence:
-    """One sentence of the database: where its frames are, and what is said in it."""
-
-    name: str
-    emotion: str
-    text: str
-    start_frame: int
-    stop_frame: int
-    transcript: Transcript
 
 
 @dataclass(frozen=True)
@@ -67,7 +58,8 @@ class MotionDatabase:
     sentences : in the order of their frames
     maps : phoneme name to its Isomap
     weights : default search weights of this database
-    held_out : sentence names by split
+    with_scale : each frame of its captures was scaled to the size of the rest pose (tracked video)
+    held_out : sentence names by split (``tune``, ``test``), which made no node; see `held_out_recordings`
     report : what was done to the data, sentence by sentence of prose
     content_hash : hex digest of the captured content; weights, maps and curation are not part of it
     path : the file, or None when it was never stored
@@ -86,6 +78,7 @@ class MotionDatabase:
     maps: Mapping[str, PhonemeMap]
     weights: SearchWeights
     content_hash: str
+    with_scale: bool = False
     held_out: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     report: Mapping[str, object] = field(default_factory=dict)
     path: Path | None = None
@@ -105,6 +98,22 @@ class MotionDatabase:
             if sentence.name == name:
                 return sentence
         raise UserFacingError(f"The database '{self.name}' has no sentence '{name}'.")
+
+    def held_out_recordings(self, split: str) -> list[Recording]:
+        """Read the recordings that were held out as ``split`` (``tune``, ``test``), raw as they were captured.
+
+        Raises `UserFacingError` when the database holds out none, or its file is damaged.
+        """
+        import h5py
+
+        names = self.held_out.get(split, ())
+        if self.path is None or not names:
+            raise UserFacingError(
+                f"The database '{self.name}' holds out no sentences for '{split}'.",
+                "Build it with `efase build --hold-out`, or name a corpus folder with --corpus.",
+            )
+        with _damage_told(self.path), h5py.File(self.path, "r") as file:
+            return read_held_out(file, names, self.markers)
 
     def audio_bytes(self, sentence: str) -> bytes | None:
         """Return the FLAC file of a sentence's sound, or None if it was built without."""
@@ -156,10 +165,16 @@ def open_database(path: Path) -> MotionDatabase:
     path = Path(path)
     if not path.is_file():
         raise UserFacingError(f"There is no motion database at '{path}'.", "Build one with `efase build`.")
+    with _damage_told(path), h5py.File(path, "r") as file:
+        _check_version(file, path)
+        return _read(file, path)
+
+
+@contextlib.contextmanager
+def _damage_told(path: Path) -> Iterator[None]:
+    """Turn whatever a file that is no sound database makes us raise into one sentence."""
     try:
-        with h5py.File(path, "r") as file:
-            _check_version(file, path)
-            return _read(file, path)
+        yield
     except _DAMAGE as error:
         if isinstance(error, OSError) and "signature" in str(error):
             raise UserFacingError(f"'{path}' is not a motion database.", REMAKE) from error
@@ -189,12 +204,14 @@ def _read(file, path: Path) -> MotionDatabase:
         stored(file, f"frames/{name}", np.float32) for name in ("coefficients", "head_rotation", "head_translation")
     )
     check_motion(rate_hz, markers, pca, frames, np.concatenate([rotation, translation], axis=1))
-    sentences = tuple(_sentence(entry) for entry in plain_json(stored_text(file, "sentences")))
+    sentences = tuple(CapturedSentence.from_entry(entry) for entry in plain_json(stored_text(file, "sentences")))
     check_sentences((s.name for s in sentences), ((s.start_frame, s.stop_frame) for s in sentences), len(frames))
     columns = {name: stored(file, f"nodes/{name}", dtype) for name, dtype in NodeTable.COLUMNS.items()}
     nodes = NodeTable(**columns, sentence_names=tuple(s.name for s in sentences))
     check_nodes(nodes, len(frames))
     maps = {phone: _map(file, phone, len(frames)) for phone in file["maps"]}
+    held_out = plain_json(file.attrs["held_out"])
+    check_held_out(held_out)
     return MotionDatabase(
         name=str(file.attrs["name"]),
         synthetic=bool(file.attrs["synthetic"]),
@@ -209,14 +226,20 @@ def _read(file, path: Path) -> MotionDatabase:
         maps=maps,
         weights=_weights(plain_json(file.attrs["weights"])),
         content_hash=str(file.attrs["content_hash"]),
-        held_out={k: tuple(v) for k, v in plain_json(file.attrs["held_out"]).items()},
+        with_scale=bool(file.attrs.get("with_scale", False)),
+        held_out={split: tuple(names) for split, names in held_out.items()},
         report=dict(plain_json(file.attrs["report"])),
         path=path,
     )
 
 
-def write_database(database: MotionDatabase, path: Path, audio: Mapping[str, bytes]) -> None:
-    """Store ``database`` and the FLAC sound of its sentences at ``path``; raises `OSError` if the disk refuses."""
+def write_database(
+    database: MotionDatabase, path: Path, audio: Mapping[str, bytes], held_out: Sequence[Recording] = ()
+) -> None:
+    """Store ``database``, the FLAC sound of its sentences, and what is held out at ``path``.
+
+    Raises `OSError` if the disk refuses.
+    """
     import h5py
 
     # made in memory, for HDF5 ends the process when a disk fills up under it
@@ -224,6 +247,7 @@ def write_database(database: MotionDatabase, path: Path, audio: Mapping[str, byt
         file.attrs.update(
             format=FORMAT, version_major=VERSION[0], version_minor=VERSION[1], name=database.name,
             synthetic=database.synthetic, rate_hz=database.rate_hz, content_hash=database.content_hash,
+            with_scale=database.with_scale,
             weights=json.dumps(database.weights.as_dict()), held_out=json.dumps(dict(database.held_out)),
             report=json.dumps(dict(database.report)),
         )  # fmt: skip
@@ -237,10 +261,11 @@ def write_database(database: MotionDatabase, path: Path, audio: Mapping[str, byt
         file.create_dataset("frames/head_translation", data=database.head_translation)
         for name in NodeTable.COLUMNS:
             file.create_dataset(f"nodes/{name}", data=getattr(database.nodes, name))
-        file.create_dataset("sentences", data=json.dumps([_sentence_entry(s) for s in database.sentences]))
+        file.create_dataset("sentences", data=json.dumps([s.as_entry() for s in database.sentences]))
         file.create_group("maps")
         for phone, phoneme_map in database.maps.items():
             phoneme_map.write(file.create_group(f"maps/{phone}"))
+        write_held_out(file, held_out, database.markers.names)
         for sentence, flac in audio.items():
             file.create_dataset(f"audio/{sentence}", data=np.frombuffer(flac, np.uint8))
         file.flush()
@@ -253,26 +278,6 @@ def _weights(values: object) -> SearchWeights:
         return SearchWeights.from_dict(values)
     except UserFacingError as error:
         raise Unsound("its search weights are none") from error
-
-
-def _sentence_entry(sentence: CapturedSentence) -> dict[str, object]:
-    transcript = sentence.transcript
-    return {
-        "name": sentence.name, "emotion": sentence.emotion, "text": sentence.text,
-        "frames": [sentence.start_frame, sentence.stop_frame], "duration_s": transcript.duration_s,
-        "phonemes": [[u.phone, u.start_s, u.end_s] for u in transcript.phonemes],
-        "words": [[w.word, w.start_s, w.end_s] for w in transcript.words],
-    }  # fmt: skip
-
-
-def _sentence(entry: dict) -> CapturedSentence:
-    transcript = Transcript(
-        tuple(PhonemeUtterance(*u) for u in entry["phonemes"]),
-        tuple(WordUtterance(*w) for w in entry["words"]),
-        entry["duration_s"],
-    )
-    check_spoken(entry["emotion"], transcript)
-    return CapturedSentence(entry["name"], entry["emotion"], entry["text"], *entry["frames"], transcript)
 
 
 def _map(file, phone: str, n_frames: int) -> PhonemeMap:

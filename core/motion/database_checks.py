@@ -66,9 +66,29 @@ def plain_json(text: str | bytes) -> object:
     return json.loads(text, parse_constant=refuse)
 
 
+def check_rate(rate_hz: float) -> None:
+    """Check frames a second."""
+    _require(_RATES_HZ[0] <= rate_hz <= _RATES_HZ[1], "its rate is no frame rate")
+
+
+def check_captured(positions: np.ndarray, n_markers: int) -> None:
+    """Check raw marker positions; a marker may be missing (NaN)."""
+    _require(positions.ndim == 3 and positions.shape[1:] == (n_markers, 3), "its recordings do not fit the markers")
+    _require(bool((np.isnan(positions) | (np.abs(positions) <= _LARGEST)).all()), "it holds numbers that are no motion")
+
+
+def check_held_out(held_out: object) -> None:
+    """Check that sentence names are listed by split."""
+    _require(isinstance(held_out, dict), "its held-out sentences are no lists")
+    for names in held_out.values():
+        _require(
+            isinstance(names, list) and all(isinstance(n, str) for n in names), "its held-out sentences are no lists"
+        )
+
+
 def check_motion(rate_hz: float, markers: MarkerSet, pca: MotionPca, frames: np.ndarray, tracks: np.ndarray) -> None:
     """Check rate, rest pose, principal components, and the frames with their head ``tracks``."""
-    _require(_RATES_HZ[0] <= rate_hz <= _RATES_HZ[1], "its rate is no frame rate")
+    check_rate(rate_hz)
     _require(len(markers) > 0, "it has no marker")
     _require(all(isinstance(name, str) for name in markers.names), "a marker has no name")
     known = set(markers.names)
