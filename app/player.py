@@ -2,96 +2,16 @@
 
 from __future__ import annotations
 
-import logging
-import time
-from typing import Protocol
-
-import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.jobs import JobRunner
-from app.texts import SOUND_LOST, SOUND_MISSING
-from core.media.audio import Audio, resampled
-from core.progress import Progress
-
-log = logging.getLogger("sound")
+from app.sound import Clock, Passage, ScrubSound, TimerClock, open_clock, open_scrub
+from app.texts import SOUND_LOST
+from core.media.audio import Audio
 
 _TICK_MS = 16
-
-
-class Clock(Protocol):
-    """Tells where playback is."""
-
-    lost: bool
-
-    def now_s(self) -> float:
-        """Seconds of the speech that are heard now."""
-
-    def stop(self) -> None:
-        """Stop for good."""
-
-
-class TimerClock:
-    """Goes on without sound."""
-
-    lost = False
-
-    def __init__(self, start_s: float) -> None:
-        self._start_s, self._began_s = start_s, time.perf_counter()
-
-    def now_s(self) -> float:
-        """See `Clock.now_s`."""
-        return self._start_s + time.perf_counter() - self._began_s
-
-    def stop(self) -> None:
-        """See `Clock.stop`."""
-
-
-class SoundClock:
-    """Plays through the default output device; its time is the stream's, less what has not been heard yet.
-
-    Raises `OSError` or ``sounddevice.PortAudioError`` when there is no device.
-    """
-
-    def __init__(self, audio: Audio, start_s: float) -> None:
-        import sounddevice
-
-        device = sounddevice.query_devices(kind="output")
-        self._audio = resampled(audio, round(device["default_samplerate"]))
-        self._start_s = start_s
-        self._next = int(start_s * self._audio.rate_hz)
-        self._mark: tuple[float, float] | None = None
-        self._stopping = False
-        self.lost = False
-        self._stream = sounddevice.OutputStream(
-            samplerate=self._audio.rate_hz, channels=1, dtype="float32", callback=self._fill,
-            finished_callback=self._on_finished,
-        )  # fmt: skip
-        self._stream.start()
-
-    def now_s(self) -> float:
-        """See `Clock.now_s`."""
-        if self._mark is None:
-            return self._start_s
-        heard_at, time_s = self._mark
-        return max(self._start_s, time_s + self._stream.time - heard_at)
-
-    def stop(self) -> None:
-        """See `Clock.stop`."""
-        self._stopping = True
-        self._stream.close()
-
-    def _fill(self, out: np.ndarray, n_frames: int, times, _status) -> None:
-        # some hosts leave the time at which the block is heard at 0
-        heard_at = times.outputBufferDacTime or times.currentTime + self._stream.latency
-        self._mark = heard_at, self._next / self._audio.rate_hz
-        block = self._audio.samples[self._next : self._next + n_frames]
-        out[: len(block), 0] = block
-        out[len(block) :] = 0.0
-        self._next += n_frames
-
-    def _on_finished(self) -> None:
-        self.lost = not self._stopping
+_FASTEST = 4.0
+_SHORTEST_LOOP_S = 0.05
 
 
 class Player(QObject):
@@ -111,6 +31,10 @@ class Player(QObject):
         self._position_s = 0.0
         self._clock: Clock | None = None
         self._playing = False
+        self._speed = 1.0
+        self._loop: tuple[float, float] | None = None
+        self._scrub: ScrubSound | None = None
+        self._scrubbing = False
         self._tick = QTimer(self)
         self._tick.setInterval(_TICK_MS)
         self._tick.timeout.connect(self._on_tick)
@@ -129,17 +53,51 @@ class Player(QObject):
         """Play something else from now on."""
         if audio is not self._audio:
             self.pause()
-            self._audio, self._position_s = audio, 0.0
+            self.end_scrub()
+            self._audio, self._position_s, self._loop = audio, 0.0, None
 
-    def play(self) -> None:
-        """Play on from where it stands, or from the start when it stands at the end."""
-        if self._audio is None or self._playing:
+    @property
+    def loop(self) -> tuple[float, float] | None:
+        """What is repeated, (start_s, end_s), or None."""
+        return self._loop
+
+    def set_loop(self, loop: tuple[float, float] | None) -> None:
+        """Repeat a span from now on, or play to the end again."""
+        if loop is not None:
+            loop = max(loop[0], 0.0), min(loop[1], self.duration_s)
+            if loop[1] - loop[0] < _SHORTEST_LOOP_S:
+                loop = None
+        self._loop = loop
+        if self._playing:
+            self.seek(self._position_s)
+
+    def play(self, speed: float = 1.0) -> None:
+        """Play on from where it stands, or from the other end when it stands at the end.
+
+        speed : 1 as recorded, negative backwards
+        """
+        if self._audio is None or (self._playing and speed == self._speed):
             return
-        if self._position_s >= self.duration_s - 1e-3:
-            self._position_s = 0.0
-        self._playing = True
-        self.playing_changed.emit(True)
+        if self._playing:
+            self._end_clock()
+        self._speed = speed
+        first_s, end_s = (0.0, self.duration_s) if self._loop is None else self._loop
+        if speed > 0 and not first_s <= self._position_s < end_s - 1e-3:
+            self._position_s = first_s
+        elif speed < 0 and self._position_s <= 1e-3:
+            self._position_s = self.duration_s
+        if not self._playing:
+            self._playing = True
+            self.playing_changed.emit(True)
         self._begin()
+
+    def shuttle(self, direction: int) -> None:
+        """Play forwards (1) or backwards (-1), twice as fast each time it is asked again; 0 pauses."""
+        if direction == 0:
+            self.pause()
+            return
+        same_way = self._playing and self._speed * direction > 0
+        self.play(direction * min(2.0 * abs(self._speed), _FASTEST) if same_way else float(direction))
 
     def pause(self) -> None:
         """Stop where it is."""
@@ -164,10 +122,36 @@ class Player(QObject):
             self._end_clock()
             self._begin()
 
+    def scrub(self, time_s: float) -> None:
+        """Go to ``time_s`` and let the sound run after it; see `end_scrub`."""
+        self.pause()
+        self.seek(time_s)
+        if self._scrub is not None:
+            self._scrub.move(self._position_s)
+        elif self._audio is not None and not self._scrubbing:
+            self._scrubbing = True
+            request = (self._audio, self._position_s)
+            self._jobs.start("scrub", "", request, open_scrub, self._on_scrub, discarded=_stop_scrub)
+
+    def end_scrub(self) -> None:
+        """The playhead was let go."""
+        self._scrubbing = False
+        self._jobs.cancel("scrub")
+        _stop_scrub(self._scrub)
+        self._scrub = None
+
+    def _on_scrub(self, scrub: ScrubSound | None) -> None:
+        self._scrub = scrub
+        if scrub is not None:
+            scrub.move(self._position_s)
+
     def _begin(self) -> None:
         # a sound server can take a tenth of a second to open a stream
-        request = (self._audio, self._position_s)
-        self._jobs.start("sound", "", request, _open_clock, self._on_clock, discarded=_stop_clock)
+        request = (self._audio, self._passage())
+        self._jobs.start("sound", "", request, open_clock, self._on_clock, discarded=_stop_clock)
+
+    def _passage(self) -> Passage:
+        return Passage(self._position_s, self._speed, self._loop)
 
     def _on_clock(self, answer: tuple[Clock, str]) -> None:
         clock, note = answer
@@ -190,31 +174,18 @@ class Player(QObject):
             return
         if self._clock.lost:
             self._clock.stop()
-            self._clock = TimerClock(self._position_s)
+            self._clock = TimerClock(self._passage())
             self.noted.emit(SOUND_LOST)
-        self._position_s = min(self._clock.now_s(), self.duration_s)
+        self._position_s = min(max(self._clock.now_s(), 0.0), self.duration_s)
         self.moved.emit(self._position_s)
-        if self._position_s >= self.duration_s:
+        if (self._speed > 0 and self._position_s >= self.duration_s) or (self._speed < 0 and self._position_s <= 0.0):
             self.pause()
-
-
-def _open_clock(request: tuple[Audio, float], _progress: Progress) -> tuple[Clock, str]:
-    audio, start_s = request
-    try:
-        import sounddevice
-
-        clock = SoundClock(audio, start_s)
-    except OSError as error:  # no PortAudio library
-        return _without_sound(start_s, error)
-    except sounddevice.PortAudioError as error:
-        return _without_sound(start_s, error)
-    return clock, ""
 
 
 def _stop_clock(answer: tuple[Clock, str]) -> None:
     answer[0].stop()
 
 
-def _without_sound(start_s: float, error: Exception) -> tuple[Clock, str]:
-    log.info("no sound: %s", error)
-    return TimerClock(start_s), SOUND_MISSING
+def _stop_scrub(scrub: ScrubSound | None) -> None:
+    if scrub is not None:
+        scrub.stop()

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 
 import app.player
 from app import texts
 from app.jobs import JobRunner
-from app.player import Player, TimerClock
+from app.player import Player
+from app.sound import TimerClock
 from core.media.audio import Audio
 
 WAIT_MS = 5000
@@ -17,8 +20,8 @@ WAIT_MS = 5000
 class FakeClock:
     """Stands for a sound device that stops at a given time."""
 
-    def __init__(self, start_s, dies_at_s=np.inf):
-        self._timer, self._dies_at_s, self.stopped = TimerClock(start_s), dies_at_s, False
+    def __init__(self, passage, dies_at_s=np.inf):
+        self._timer, self._dies_at_s, self.stopped = TimerClock(passage), dies_at_s, False
 
     def now_s(self):
         return min(self._timer.now_s(), self._dies_at_s)
@@ -51,7 +54,7 @@ def clocks(monkeypatch):
         return opened[-1], ""
 
     open_clock.dies_at_s, open_clock.all = np.inf, opened
-    monkeypatch.setattr(app.player, "_open_clock", open_clock)
+    monkeypatch.setattr(app.player, "open_clock", open_clock)
     return open_clock
 
 
@@ -99,3 +102,33 @@ def test_without_sound_there_is_nothing_to_play(player):
     player.play()
     assert not player.is_playing
     assert player.duration_s == 0.0
+
+
+def test_it_plays_backwards_to_the_start_and_faster_each_time_it_is_asked(player, clocks, qtbot):
+    moved = []
+    player.seek(0.4)
+    player.moved.connect(moved.append)
+    player.shuttle(-1)
+    player.shuttle(-1)
+    qtbot.waitUntil(lambda: not player.is_playing, timeout=WAIT_MS)
+    assert moved == sorted(moved, reverse=True)
+    assert moved[-1] == 0.0
+    assert len(clocks.all) <= 2
+
+
+def test_a_loop_is_repeated_until_it_is_paused(player, clocks, qtbot):
+    moved = []
+    player.set_loop((0.1, 0.2))
+    player.moved.connect(moved.append)
+    player.play()
+    qtbot.waitUntil(lambda: len([1 for a, b in itertools.pairwise(moved) if b < a]) >= 2, timeout=WAIT_MS)
+    assert player.is_playing
+    assert min(moved) >= 0.1
+    assert max(moved) < 0.2
+    player.shuttle(0)
+    assert not player.is_playing
+
+
+def test_a_loop_too_short_to_hear_is_none(player):
+    player.set_loop((0.2, 0.21))
+    assert player.loop is None
