@@ -7,24 +7,38 @@ float64 in each backend, so that all backends give the same bits and therefore t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Protocol
 
 import numpy as np
 
+from core.errors import UserFacingError
+
 
 @dataclass(frozen=True)
 class DeviceReport:
-    """Which driver really runs: backend name, device name, API version, and whether it is software."""
+    """What really runs: backend, device, API and driver with their versions, and whether it is software."""
 
     backend: str
     device: str
     api: str
     software: bool
+    driver: str = ""
+
+    def as_dict(self) -> dict[str, object]:
+        """Return it for ``--json``."""
+        return asdict(self)
+
+
+class DeviceFailed(UserFacingError):
+    """A compute device was lost, has no room, or gave up in mid-work; the message says which and why."""
 
 
 class SearchKernels(Protocol):
-    """What a compute backend offers to the search. The matrix has the node arrived at as its row."""
+    """What a compute backend offers to the search. The matrix has the node arrived at as its row.
+
+    A method raises `DeviceFailed` when the device cannot do it.
+    """
 
     report: DeviceReport
 

@@ -15,43 +15,73 @@
 // Columns that stay in the first-level cache while all rows of a group pass over them.
 #define TILE 2048u
 
-// One work-item owns ROWS motion nodes and reads their rows side by side: what it loads of the front, twice as wide as a
-// piece of a row, then serves all of them. A comparison costs less than fmin, which has to think of NaN.
+// ROWS rows go side by side: what is loaded of the front, twice as wide as a piece of a row, then serves all of them.
+// The host sets ROWS and LANES, doubles to a vector, to what the processor's registers hold.
+#if LANES == 8
+typedef double8 doubles;
+#define LOAD vload8
+#define STORE vstore8
+#define CONVERT convert_double8
+#else
+typedef double4 doubles;
+#define LOAD vload4
+#define STORE vstore4
+#define CONVERT convert_double4
+#endif
+
+// A comparison costs less than fmin, which has to think of NaN.
 #define LESSER(a, b) select(a, b, (b) < (a))
 
+double least_lane(doubles found)
+{
+#if LANES == 8
+    const double4 four = LESSER(found.lo, found.hi);
+#else
+    const double4 four = found;
+#endif
+    return fmin(fmin(four.x, four.y), fmin(four.z, four.w));
+}
+
+// Rows of a group's stripe: a multiple of ROWS, so that only the last group meets the padding.
+uint rows_of_stripe(uint n_nodes)
+{
+    const uint share = (n_nodes + get_global_size(0) - 1) / get_global_size(0);
+    return (share + ROWS - 1) / ROWS * ROWS;
+}
+
+// One work-item is a group that owns a stripe of rows and reads on through it: many short work-items would tear what
+// the processor fetches ahead, and leave a core idle at the end of a step.
 __kernel void min_plus(__global const float *restrict DistanceMap,
                        __global const double *restrict PrevCostBufferMap,
                        __global double *restrict CostValueMap,
                        const uint n_nodes,
                        const uint stride)
 {
-    const uint first = get_global_id(0) * ROWS;
-    __global const float *rows = DistanceMap + (ulong)first * stride;
-    double4 least[ROWS];
+    const uint rows = rows_of_stripe(n_nodes);
+    const uint first = min((uint)get_global_id(0) * rows, n_nodes), last = min(first + rows, n_nodes);
+    for (uint m = first; m < last; m += ROWS) {
+        __global const float *at = DistanceMap + (ulong)m * stride;
+        doubles least[ROWS];
 #pragma unroll
-    for (uint row = 0; row < ROWS; ++row)
-        least[row] = (double4)(INFINITY);
-    for (uint n = 0; n < stride; n += 8) {
-        const double4 front0 = vload4(0, PrevCostBufferMap + n);
-        const double4 front1 = vload4(0, PrevCostBufferMap + n + 4);
+        for (uint row = 0; row < ROWS; ++row)
+            least[row] = (doubles)(INFINITY);
+        for (uint n = 0; n < stride; n += LANES) {
+            const doubles front = LOAD(0, PrevCostBufferMap + n);
 #pragma unroll
-        for (uint row = 0; row < ROWS; ++row) {
-            __global const float *at = rows + (ulong)row * stride + n;
-            const double4 cost0 = front0 + convert_double4(vload4(0, at));
-            const double4 cost1 = front1 + convert_double4(vload4(0, at + 4));
-            least[row] = LESSER(least[row], cost0);
-            least[row] = LESSER(least[row], cost1);
+            for (uint row = 0; row < ROWS; ++row) {
+                const doubles cost = front + CONVERT(LOAD(0, at + (ulong)row * stride + n));
+                least[row] = LESSER(least[row], cost);
+            }
         }
-    }
 #pragma unroll
-    for (uint row = 0; row < ROWS; ++row)
-        if (first + row < n_nodes)
-            CostValueMap[first + row] =
-                fmin(fmin(least[row].x, least[row].y), fmin(least[row].z, least[row].w));
+        for (uint row = 0; row < ROWS; ++row)
+            if (m + row < last)
+                CostValueMap[m + row] = least_lane(least[row]);
+    }
 }
 
-// One work-item is a group that owns a stripe of rows, and reads each element of it once for both directions; ROWS rows
-// go side by side, so that the minima of a tile's columns are loaded and stored once for them.
+// The same stripes; each element is read once for both directions, and the minima of a tile's columns are loaded and
+// stored once for ROWS rows.
 __kernel void min_plus_both(__global const float *restrict DistanceMap,
                             __global const double *restrict PrevCostBufferMap,
                             __global const double *restrict NextCostBufferMap,
@@ -61,41 +91,39 @@ __kernel void min_plus_both(__global const float *restrict DistanceMap,
                             const uint stride)
 {
     const uint group = get_global_id(0);
-    const uint share = (n_nodes + get_global_size(0) - 1) / get_global_size(0);
-    const uint rows = (share + ROWS - 1) / ROWS * ROWS;
+    const uint rows = rows_of_stripe(n_nodes);
     const uint first = min(group * rows, n_nodes), last = min(first + rows, n_nodes);
     __global double *leaving = CostBuffMap + (ulong)group * stride;
-    for (uint n = 0; n < stride; n += 4)
-        vstore4((double4)(INFINITY), 0, leaving + n);
+    for (uint n = 0; n < stride; n += LANES)
+        STORE((doubles)(INFINITY), 0, leaving + n);
     for (uint m = first; m < last; ++m)
         CostValueMap[m] = INFINITY;
     for (uint tile = 0; tile < stride; tile += TILE) {
         const uint end = min(tile + TILE, stride);
         for (uint m = first; m < last; m += ROWS) {
-            double4 least[ROWS], behind[ROWS];
+            doubles least[ROWS], behind[ROWS];
 #pragma unroll
             for (uint row = 0; row < ROWS; ++row) {
-                least[row] = (double4)(INFINITY);
+                least[row] = (doubles)(INFINITY);
                 // rows of padding are read, and count for nothing
-                behind[row] = (double4)(m + row < last ? NextCostBufferMap[m + row] : INFINITY);
+                behind[row] = (doubles)(m + row < last ? NextCostBufferMap[m + row] : INFINITY);
             }
-            for (uint n = tile; n < end; n += 4) {
-                const double4 front = vload4(0, PrevCostBufferMap + n);
-                double4 lowest = vload4(0, leaving + n);
+            for (uint n = tile; n < end; n += LANES) {
+                const doubles front = LOAD(0, PrevCostBufferMap + n);
+                doubles lowest = LOAD(0, leaving + n);
 #pragma unroll
                 for (uint row = 0; row < ROWS; ++row) {
-                    const double4 cost = convert_double4(vload4(0, DistanceMap + (ulong)(m + row) * stride + n));
-                    const double4 arriving = front + cost, going = behind[row] + cost;
+                    const doubles cost = CONVERT(LOAD(0, DistanceMap + (ulong)(m + row) * stride + n));
+                    const doubles arriving = front + cost, going = behind[row] + cost;
                     least[row] = LESSER(least[row], arriving);
                     lowest = LESSER(lowest, going);
                 }
-                vstore4(lowest, 0, leaving + n);
+                STORE(lowest, 0, leaving + n);
             }
 #pragma unroll
             for (uint row = 0; row < ROWS; ++row)
                 if (m + row < last)
-                    CostValueMap[m + row] = fmin(CostValueMap[m + row],
-                        fmin(fmin(least[row].x, least[row].y), fmin(least[row].z, least[row].w)));
+                    CostValueMap[m + row] = fmin(CostValueMap[m + row], least_lane(least[row]));
         }
     }
 }
