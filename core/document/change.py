@@ -6,18 +6,33 @@ from enum import Flag, auto
 
 
 class Change(Flag):
-    """Parts of a document."""
+    """Parts of a document.
 
+    SPEECH : another sound (ALIGNMENT comes with it); ALIGNMENT : what is said, and when
+    NODES, CLUSTERS : another database; CURATION : which of its motion nodes are removed
+    CONSTRAINTS : pins and locks
+    OUTPUT : frame rate, first frame, head motion
+    PATH : the motion on show; PRICES : what alternatives to it would cost
+    """
+
+    SPEECH = auto()
     ALIGNMENT = auto()
     NODES = auto()
     CLUSTERS = auto()
+    CURATION = auto()
     CONSTRAINTS = auto()
     EMOTIONS = auto()
+    WEIGHTS = auto()
     FACE = auto()
+    REFERENCE_VIDEO = auto()
+    OUTPUT = auto()
     PATH = auto()
+    PRICES = auto()
 
 
 NOTHING = Change(0)
 
 # Whatever of this changes, the path that is shown is no longer the best one.
-ASKED_OF_THE_SEARCH = Change.ALIGNMENT | Change.NODES | Change.CONSTRAINTS | Change.EMOTIONS
+ASKED_OF_THE_SEARCH = (
+    Change.ALIGNMENT | Change.NODES | Change.CURATION | Change.CONSTRAINTS | Change.EMOTIONS | Change.WEIGHTS
+)

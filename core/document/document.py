@@ -2,39 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 from typing import ClassVar, Protocol
 
+import numpy as np
 from psygnal import Signal
 
 from core.document.change import NOTHING, Change
-from core.media.audio import Audio
+from core.document.parts import (
+    DEFAULT_FACE,
+    DEFAULT_OUTPUT,
+    AlignedSpeech,
+    DatabaseReference,
+    FaceChoice,
+    OutputSettings,
+    ReferenceVideo,
+)
+from core.motion.curation import Removal
 from core.motion.database import MotionDatabase
 from core.search.engine import SearchAnswer
+from core.search.weights import SearchWeights
 from core.speech.emotion import EmotionModifier
-from core.speech.transcript import Transcript
 from core.synthesis.engine import SpeechInput
 
-
-class AlignedSpeech(Protocol):
-    """Sound, what is said in it, and when."""
-
-    audio: Audio
-    transcript: Transcript
-    text: str
-
-
-@dataclass(frozen=True)
-class FaceChoice:
-    """A face by name: ``default``, or the path of a mesh, with the marker file that tells where its markers sit."""
-
-    name: str
-    marker_file: str | None = None
-
-
-DEFAULT_FACE = FaceChoice("default")
+EMPTY: Mapping = MappingProxyType({})
 
 
 class Edit(Protocol):
@@ -48,6 +41,27 @@ class Edit(Protocol):
     def undo(self, document: Document) -> Change:
         """Take `do` back."""
 
+    def followed_by(self, later: Edit) -> Edit | None:
+        """Return the one edit that this and ``later``, of the same drag, make together; None when they are two."""
+
+
+@dataclass(frozen=True, eq=False)
+class ProjectState:
+    """All that belongs to a project, as it is at one moment; see `Document` for what the names mean."""
+
+    database: MotionDatabase | None = None
+    database_reference: DatabaseReference | None = None
+    speech: AlignedSpeech | None = None
+    modifiers: tuple[EmotionModifier, ...] = ()
+    pins: Mapping[int, str] = field(default_factory=lambda: EMPTY)
+    locks: Mapping[int, str] = field(default_factory=lambda: EMPTY)
+    removed_here: Mapping[str, Removal] = field(default_factory=lambda: EMPTY)
+    kept: frozenset[str] = frozenset()
+    weights: SearchWeights | None = None
+    face: FaceChoice | None = DEFAULT_FACE
+    reference_video: ReferenceVideo | None = None
+    output: OutputSettings = DEFAULT_OUTPUT
+
 
 class Document:
     """Speech, emotions, pins, database and face; and the motion that was found for them.
@@ -55,23 +69,42 @@ class Document:
     Nothing here repairs anything else: only edits (see `core.document.edits`) write to it, and they say what changed.
 
     database, speech : None until they are opened
+    database_reference : the database that the project asks for; it may be missing while ``database`` is None
     modifiers : emotion spans; one that covers all of the speech ends at infinity
     pins : slot to the public name of the motion node that is tied to it
-    removed : public names of motion nodes that must not be used
+    locks : slot to the public name of the node that was in use when its span was approved
+    shared_removals : the database's own curation list, node to who removed it, when and why
+    removed_here : nodes that only this project removes; kept : nodes that it uses although the list removes them
+    weights : of the search; None for the database's own
     face : None for markers alone
     answer : the motion that is shown, or None; until a new search answers it may be the one from before an edit
+    prices : float64, shape (n_slots, n_nodes), what forcing a node into a slot would add to the cost of ``answer``, in
+        the unit of COST; None until they are known
+    breakdown : cost of each slot of ``answer`` by term (`core.search.session.SearchSession.breakdown`), or None
     """
 
     changed: ClassVar[Signal] = Signal(object, object)
 
     def __init__(self, face: FaceChoice | None = DEFAULT_FACE) -> None:
         self.database: MotionDatabase | None = None
+        self.database_reference: DatabaseReference | None = None
         self.speech: AlignedSpeech | None = None
         self.modifiers: tuple[EmotionModifier, ...] = ()
-        self.pins: Mapping[int, str] = MappingProxyType({})
-        self.removed: frozenset[str] = frozenset()
+        self.pins: Mapping[int, str] = EMPTY
+        self.locks: Mapping[int, str] = EMPTY
+        self.shared_removals: Mapping[str, Removal] = EMPTY
+        self.removed_here: Mapping[str, Removal] = EMPTY
+        self.kept: frozenset[str] = frozenset()
+        self.weights: SearchWeights | None = None
         self.face = face
+        self.reference_video: ReferenceVideo | None = None
+        self.output = DEFAULT_OUTPUT
         self.answer: SearchAnswer | None = None
+        self.prices: np.ndarray | None = None
+        self.breakdown: Sequence[Mapping[str, float]] | None = None
+        self._names: tuple[MotionDatabase | None, frozenset[str]] = (None, frozenset())
+
+    # Changing
 
     def apply(self, edit: Edit, origin: object = None) -> None:
         """Do ``edit`` and tell the views once; ``origin`` is the view that already shows it."""
@@ -82,16 +115,79 @@ class Document:
         self._tell(edit.undo(self), origin)
 
     def show_answer(self, answer: SearchAnswer | None, origin: object = None) -> None:
-        """Take what a search found for the document as it is now."""
+        """Take what a search found for the document as it is now; its prices are still to come."""
         if answer is not self.answer:
-            self.answer = answer
-            self._tell(Change.PATH, origin)
+            self.answer, self.prices, self.breakdown = answer, None, None
+            self._tell(Change.PATH | Change.PRICES, origin)
+
+    def show_prices(self, prices: np.ndarray | None, breakdown: Sequence[Mapping[str, float]] | None) -> None:
+        """Take what the alternatives to the motion on show would cost, and what its slots cost by term."""
+        self.prices, self.breakdown = prices, breakdown
+        self._tell(Change.PRICES, None)
+
+    def read_curation(self, shared: Mapping[str, Removal], origin: object = None) -> None:
+        """Take the database's curation list as it stands on disk, where another window may have changed it."""
+        if dict(shared) != dict(self.shared_removals):
+            self.shared_removals = MappingProxyType(dict(shared))
+            self._tell(Change.CURATION, origin)
+
+    def state(self) -> ProjectState:
+        """Return all that belongs to the project."""
+        return ProjectState(**{part.name: getattr(self, part.name) for part in fields(ProjectState)})
+
+    # Asking
 
     def speech_input(self) -> SpeechInput | None:
         """Return the question to the search, frozen; None while there is no speech."""
         if self.speech is None:
             return None
-        return SpeechInput(self.speech.transcript, self.modifiers, dict(self.pins), self.removed)
+        hard, removed = {**self.pins, **self.locks}, self.removed
+        if self.database is not None:
+            known = self.node_names
+            hard = {slot: node for slot, node in hard.items() if node in known}
+            removed = frozenset(node for node in removed if node in known)
+        return SpeechInput(self.speech.transcript, self.modifiers, hard, removed)
+
+    @property
+    def removed(self) -> frozenset[str]:
+        """Public names of the motion nodes that must not be used."""
+        return (frozenset(self.shared_removals) - self.kept) | frozenset(self.removed_here)
+
+    @property
+    def node_names(self) -> frozenset[str]:
+        """Public names of all motion nodes of the database."""
+        if self._names[0] is not self.database:
+            nodes = self.database.nodes
+            self._names = self.database, frozenset(nodes.name(row) for row in range(len(nodes)))
+        return self._names[1]
+
+    @property
+    def unresolved(self) -> tuple[str, ...]:
+        """Nodes that pins and locks name but the database does not have; they are kept, and tie nothing."""
+        asked = {**self.pins, **self.locks}.values()
+        return () if self.database is None else tuple(sorted(set(asked) - self.node_names))
+
+    @property
+    def search_weights(self) -> SearchWeights | None:
+        """The weights that the search uses: the project's, else the database's."""
+        return self.weights or (None if self.database is None else self.database.weights)
+
+    @property
+    def cost_unit(self) -> float:
+        """PNT, the unit in which costs are shown."""
+        return 1.0 if self.search_weights is None else self.search_weights.pnt
+
+    @property
+    def next_best_prices(self) -> np.ndarray | None:
+        """What the next best node of each slot would add; float64, shape (n_slots,); None until prices are known.
+
+        Infinite for a slot that is pinned or locked.
+        """
+        if self.prices is None or self.answer is None or self.prices.shape[1] < 2:
+            return None
+        others = self.prices.copy()
+        others[range(len(others)), self.answer.path.nodes] = np.inf
+        return others.min(axis=1)
 
     def _tell(self, change: Change, origin: object) -> None:
         if change != NOTHING:

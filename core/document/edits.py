@@ -2,159 +2,293 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, fields, replace
 from types import MappingProxyType
+from typing import Any, Self
 
 from core.document.change import NOTHING, Change
-from core.document.document import AlignedSpeech, Document, FaceChoice
+from core.document.document import EMPTY, Document, ProjectState
+from core.document.parts import AlignedSpeech, DatabaseReference, FaceChoice, OutputSettings, ReferenceVideo
+from core.errors import UserFacingError
+from core.motion.curation import Removal
 from core.motion.database import MotionDatabase
 from core.speech.emotion import EmotionModifier
 
-NO_PINS: Mapping[int, str] = MappingProxyType({})
+# Two of these are the same only if they are one object; to compare their arrays would take long.
+_BY_IDENTITY = ("database", "speech")
 
 
 @dataclass(frozen=True, eq=False)
-class SetSpeech:
-    """Take other speech, or the same with another transcript; pins belong to slots and go with the old one."""
+class FieldEdit:
+    """An edit that sets some fields of the document.
 
-    speech: AlignedSpeech
-    before: AlignedSpeech | None
-    pins_before: Mapping[int, str]
-    label: str = "Choose speech"
+    label : what the menu says; change : what of the document it is about
+    after, before : field to value
+    gesture : number of the drag that it belongs to, or None; edits of one drag become one entry of the menu
+    note : a sentence about what had to go with it, for the status bar
+    """
+
+    label: str
+    change: Change
+    after: Mapping[str, Any]
+    before: Mapping[str, Any]
+    gesture: int | None = field(default=None, kw_only=True)
+    note: str = field(default="", kw_only=True)
+
+    @classmethod
+    def setting(
+        cls, document: Document, label: str, change: Change, *, gesture: int | None = None, note: str = "", **after: Any
+    ) -> Self:
+        """Return the edit that sets the fields ``after`` of ``document`` as it is now."""
+        before = {name: getattr(document, name) for name in after}
+        return cls(label, change, after, before, gesture=gesture, note=note)
+
+    def do(self, document: Document) -> Change:
+        """See `core.document.document.Edit`."""
+        return self._set(document, self.after)
+
+    def undo(self, document: Document) -> Change:
+        """See `core.document.document.Edit`."""
+        return self._set(document, self.before)
+
+    def followed_by(self, later: FieldEdit) -> FieldEdit | None:
+        """See `core.document.document.Edit`."""
+        if self.gesture is None or self.gesture != later.gesture or type(self) is not type(later):
+            return None
+        before = {**later.before, **self.before}
+        note = later.note or self.note
+        return replace(self, after={**self.after, **later.after}, before=before, note=note, label=later.label,
+                       change=self.change | later.change)  # fmt: skip
+
+    def _set(self, document: Document, values: Mapping[str, Any]) -> Change:
+        if all(_same(name, getattr(document, name), value) for name, value in values.items()):
+            return NOTHING
+        n_slots = _n_slots(document)
+        for name, value in values.items():
+            setattr(document, name, value)
+        # with as many slots, the motion from before may be looked at until the search answers
+        if self.change & (Change.SPEECH | Change.NODES) or _n_slots(document) != n_slots:
+            document.answer = document.prices = document.breakdown = None
+            return self.change | Change.PATH | Change.PRICES
+        return self.change
+
+
+def _same(name: str, one: object, other: object) -> bool:
+    return one is other or (name not in _BY_IDENTITY and one == other)
+
+
+def _n_slots(document: Document) -> int | None:
+    return None if document.speech is None else len(document.speech.transcript.phonemes)
+
+
+class SetSpeech(FieldEdit):
+    """Take other speech, or the same with another transcript; pins and locks belong to slots and go with the old."""
 
     @classmethod
     def on(cls, document: Document, speech: AlignedSpeech, label: str = "Choose speech") -> SetSpeech:
         """Return the edit for ``document`` as it is now."""
-        return cls(speech, document.speech, document.pins, label)
-
-    def do(self, document: Document) -> Change:
-        """See `core.document.document.Edit`."""
-        return self._set(document, self.speech, NO_PINS)
-
-    def undo(self, document: Document) -> Change:
-        """See `core.document.document.Edit`."""
-        return self._set(document, self.before, self.pins_before)
-
-    def _set(self, document: Document, speech: AlignedSpeech | None, pins: Mapping[int, str]) -> Change:
-        document.speech, document.pins, document.answer = speech, pins, None
-        return Change.ALIGNMENT | Change.CONSTRAINTS | Change.PATH
+        same_sound = document.speech is not None and document.speech.audio is speech.audio
+        change = Change.ALIGNMENT | Change.CONSTRAINTS | (NOTHING if same_sound else Change.SPEECH)
+        return cls.setting(document, label, change, speech=speech, pins=EMPTY, locks=EMPTY)
 
 
-@dataclass(frozen=True, eq=False)
-class SetDatabase:
-    """Search another motion database; pins name nodes of the old one and go with it."""
+class SetDatabase(FieldEdit):
+    """Search another motion database. Pins and locks stay: they name nodes as ``sentence:order``.
 
-    database: MotionDatabase
-    before: MotionDatabase | None
-    pins_before: Mapping[int, str]
-    label: str = "Open motion database"
+    Those that the other database does not have tie nothing as long as it is open.
+    """
 
     @classmethod
-    def on(cls, document: Document, database: MotionDatabase) -> SetDatabase:
-        """Return the edit for ``document`` as it is now."""
-        return cls(database, document.database, document.pins)
-
-    def do(self, document: Document) -> Change:
-        """See `core.document.document.Edit`."""
-        return self._set(document, self.database, NO_PINS)
-
-    def undo(self, document: Document) -> Change:
-        """See `core.document.document.Edit`."""
-        return self._set(document, self.before, self.pins_before)
-
-    def _set(self, document: Document, database: MotionDatabase | None, pins: Mapping[int, str]) -> Change:
-        document.database, document.pins, document.answer = database, pins, None
-        return Change.NODES | Change.CLUSTERS | Change.CONSTRAINTS | Change.PATH
+    def on(cls, document: Document, database: MotionDatabase, shared: Mapping[str, Removal] = EMPTY) -> SetDatabase:
+        """Return the edit for ``document`` as it is now; ``shared`` is the database's own curation list."""
+        change = Change.NODES | Change.CLUSTERS | Change.CURATION | Change.CONSTRAINTS
+        reference = DatabaseReference.to(database)
+        return cls.setting(document, "Open motion database", change, database=database,
+                           database_reference=reference, shared_removals=MappingProxyType(dict(shared)))  # fmt: skip
 
 
-@dataclass(frozen=True)
-class SetEmotion:
-    """Replace all emotion spans."""
-
-    modifiers: tuple[EmotionModifier, ...]
-    before: tuple[EmotionModifier, ...]
-    label: str = "Set emotion"
+class SetEmotion(FieldEdit):
+    """Replace all emotion spans; see `core.speech.emotion_painting` for what a brush makes of them."""
 
     @classmethod
-    def on(cls, document: Document, modifiers: tuple[EmotionModifier, ...], label: str) -> SetEmotion:
+    def on(
+        cls, document: Document, modifiers: tuple[EmotionModifier, ...], label: str, gesture: int | None = None
+    ) -> SetEmotion:
         """Return the edit for ``document`` as it is now."""
-        return cls(modifiers, document.modifiers, label)
-
-    def do(self, document: Document) -> Change:
-        """See `core.document.document.Edit`."""
-        return self._set(document, self.modifiers)
-
-    def undo(self, document: Document) -> Change:
-        """See `core.document.document.Edit`."""
-        return self._set(document, self.before)
-
-    def _set(self, document: Document, modifiers: tuple[EmotionModifier, ...]) -> Change:
-        if document.modifiers == modifiers:
-            return NOTHING
-        document.modifiers = modifiers
-        return Change.EMOTIONS
+        return cls.setting(document, label, Change.EMOTIONS, gesture=gesture, modifiers=tuple(modifiers))
 
 
-@dataclass(frozen=True)
-class PinMotionNode:
+class PinMotionNode(FieldEdit):
     """Tie a motion node to a slot (a motion-node constraint); ``node`` None frees the slot."""
-
-    slot: int
-    node: str | None
-    before: str | None
 
     @classmethod
     def on(cls, document: Document, slot: int, node: str | None) -> PinMotionNode:
-        """Return the edit for ``document`` as it is now."""
-        return cls(slot, node, document.pins.get(slot))
+        """Return the edit for ``document`` as it is now; raises `UserFacingError` for a slot that is locked."""
+        if slot in document.locks and node not in (None, document.locks[slot]):
+            raise UserFacingError(f"Slot {slot} is locked to the node {document.locks[slot]}.", "Unlock it first.")
+        pins = {p: name for p, name in document.pins.items() if p != slot}
+        if node is not None:
+            pins[slot] = node
+        label = f"Pin node {node}" if node is not None else f"Unpin node {document.pins.get(slot)}"
+        return cls.setting(document, label, Change.CONSTRAINTS, pins=MappingProxyType(pins))
 
-    @property
-    def label(self) -> str:
-        """What the menu says."""
-        return f"Pin node {self.node}" if self.node is not None else f"Unpin node {self.before}"
+
+class LockSlots(FieldEdit):
+    """Keep slots as they are: tie each to the motion node that it uses now (hard), so that no later edit moves it."""
+
+    @classmethod
+    def on(cls, document: Document, slots: Iterable[int]) -> LockSlots:
+        """Return the edit for ``document`` as it is now; raises `UserFacingError` while there is no motion to keep."""
+        slots = sorted(set(slots))
+        if document.answer is None or document.database is None:
+            raise UserFacingError("There is no motion to lock yet.", "Synthesise first (Ctrl+Return).")
+        used = document.answer.path.nodes
+        names = {slot: document.database.nodes.name(used[slot]) for slot in slots if 0 <= slot < len(used)}
+        locks = MappingProxyType({**document.locks, **names})
+        return cls.setting(document, f"Lock {_slots_in_words(document, slots)}", Change.CONSTRAINTS, locks=locks)
+
+
+class UnlockSlots(FieldEdit):
+    """Let the search choose again in slots that were locked."""
+
+    @classmethod
+    def on(cls, document: Document, slots: Iterable[int]) -> UnlockSlots:
+        """Return the edit for ``document`` as it is now."""
+        slots = sorted(set(slots))
+        locks = MappingProxyType({slot: node for slot, node in document.locks.items() if slot not in slots})
+        return cls.setting(document, f"Unlock {_slots_in_words(document, slots)}", Change.CONSTRAINTS, locks=locks)
+
+
+def _slots_in_words(document: Document, slots: list[int]) -> str:
+    phones = document.speech.transcript.phones if document.speech is not None else ()
+    return " ".join(f"/{phones[slot]}/" for slot in slots[:4] if slot < len(phones)) + (" …" if len(slots) > 4 else "")
+
+
+@dataclass(frozen=True, eq=False)
+class _CurationEdit:
+    """Removes or restores motion nodes, each by itself: the curation list is shared, others may change it meanwhile.
+
+    shared, here : node to its removal before and after, None for a node that was or is not removed
+    kept : node to whether the project used it all the same, before and after
+    """
+
+    label: str
+    shared: Mapping[str, tuple[Removal | None, Removal | None]]
+    here: Mapping[str, tuple[Removal | None, Removal | None]]
+    kept: Mapping[str, tuple[bool, bool]]
+
+    @classmethod
+    def setting(cls, document: Document, label: str, nodes: Iterable[str], **after: Removal | bool | None) -> Self:
+        """Return the edit that gives ``nodes`` what ``after`` says of shared, here and kept."""
+        nodes = tuple(dict.fromkeys(nodes))
+        now = {"shared": document.shared_removals.get, "here": document.removed_here.get,
+               "kept": document.kept.__contains__}  # fmt: skip
+        changes = {
+            part: {node: (get(node), after[part]) for node in nodes} if part in after else {}
+            for part, get in now.items()
+        }
+        what = f"node {nodes[0]}" if len(nodes) == 1 else f"{len(nodes)} nodes"
+        return cls(f"{label} {what}", **changes)
 
     def do(self, document: Document) -> Change:
         """See `core.document.document.Edit`."""
-        return self._set(document, self.node)
+        return self._set(document, 1)
 
     def undo(self, document: Document) -> Change:
         """See `core.document.document.Edit`."""
-        return self._set(document, self.before)
+        return self._set(document, 0)
 
-    def _set(self, document: Document, node: str | None) -> Change:
-        if document.pins.get(self.slot) == node:
-            return NOTHING
-        pins = {slot: name for slot, name in document.pins.items() if slot != self.slot}
-        if node is not None:
-            pins[self.slot] = node
-        document.pins = MappingProxyType(pins)
-        return Change.CONSTRAINTS
+    def followed_by(self, later: object) -> None:
+        """See `core.document.document.Edit`."""
+
+    def _set(self, document: Document, which: int) -> Change:
+        before = document.shared_removals, document.removed_here, document.kept
+        document.shared_removals = _with(document.shared_removals, {n: v[which] for n, v in self.shared.items()})
+        document.removed_here = _with(document.removed_here, {n: v[which] for n, v in self.here.items()})
+        used = {node for node, values in self.kept.items() if values[which]}
+        document.kept = frozenset(document.kept - self.kept.keys() | used)
+        after = document.shared_removals, document.removed_here, document.kept
+        return NOTHING if before == after else Change.CURATION
 
 
-@dataclass(frozen=True)
-class SetFace:
+def _with(removals: Mapping[str, Removal], changes: Mapping[str, Removal | None]) -> Mapping[str, Removal]:
+    changed = {**removals, **changes}
+    return MappingProxyType({node: removal for node, removal in changed.items() if removal is not None})
+
+
+class RemoveMotionNodes(_CurationEdit):
+    """Let no search use these motion nodes any more: in any project, or in this one only."""
+
+    @classmethod
+    def on(cls, document: Document, nodes: Iterable[str], removal: Removal, only_here: bool = False) -> Self:
+        """Return the edit for ``document`` as it is now; ``removal`` says who does it and why."""
+        where = "here" if only_here else "shared"
+        return cls.setting(document, "Remove", nodes, kept=False, **{where: removal})
+
+
+class RestoreMotionNodes(_CurationEdit):
+    """Let the search use removed motion nodes again: in any project, or in this one only."""
+
+    @classmethod
+    def on(cls, document: Document, nodes: Iterable[str], only_here: bool = False) -> Self:
+        """Return the edit for ``document`` as it is now."""
+        if only_here:
+            edit = cls.setting(document, "Restore", nodes, here=None, kept=True)
+            return replace(edit, kept={n: v for n, v in edit.kept.items() if n in document.shared_removals})
+        return cls.setting(document, "Restore", nodes, here=None, kept=False, shared=None)
+
+
+class SetFace(FieldEdit):
     """Show another face, or markers alone."""
-
-    face: FaceChoice | None
-    before: FaceChoice | None
-    label: str = "Choose face"
 
     @classmethod
     def on(cls, document: Document, face: FaceChoice | None) -> SetFace:
         """Return the edit for ``document`` as it is now."""
-        return cls(face, document.face)
+        return cls.setting(document, "Choose face", Change.FACE, face=face)
 
-    def do(self, document: Document) -> Change:
-        """See `core.document.document.Edit`."""
-        return self._set(document, self.face)
 
-    def undo(self, document: Document) -> Change:
-        """See `core.document.document.Edit`."""
-        return self._set(document, self.before)
+class SetReferenceVideo(FieldEdit):
+    """Show another film of the actor, none, or the same at another offset."""
 
-    def _set(self, document: Document, face: FaceChoice | None) -> Change:
-        if document.face == face:
-            return NOTHING
-        document.face = face
-        return Change.FACE
+    @classmethod
+    def on(cls, document: Document, video: ReferenceVideo | None, gesture: int | None = None) -> SetReferenceVideo:
+        """Return the edit for ``document`` as it is now."""
+        before = document.reference_video
+        moved = video is not None and before is not None and video.path == before.path
+        label = "Move reference video" if moved else "Choose reference video"
+        return cls.setting(document, label, Change.REFERENCE_VIDEO, gesture=gesture, reference_video=video)
+
+
+class SetOutput(FieldEdit):
+    """Make films at another rate, from another first frame, or with the head still."""
+
+    @classmethod
+    def on(cls, document: Document, output: OutputSettings, label: str = "Set frame rate") -> SetOutput:
+        """Return the edit for ``document`` as it is now."""
+        return cls.setting(document, label, Change.OUTPUT, output=output)
+
+
+class RestoreVersion(FieldEdit):
+    """Make the project what it was in a named version; nothing is lost, for it undoes."""
+
+    CHANGES = MappingProxyType({
+        "speech": Change.SPEECH | Change.ALIGNMENT, "database": Change.NODES | Change.CLUSTERS,
+        "database_reference": Change.NODES | Change.CLUSTERS, "modifiers": Change.EMOTIONS, "pins": Change.CONSTRAINTS,
+        "locks": Change.CONSTRAINTS, "removed_here": Change.CURATION, "kept": Change.CURATION,
+        "weights": Change.WEIGHTS, "face": Change.FACE, "reference_video": Change.REFERENCE_VIDEO,
+        "output": Change.OUTPUT,
+    })  # fmt: skip
+
+    @classmethod
+    def on(cls, document: Document, state: ProjectState, name: str) -> RestoreVersion:
+        """Return the edit for ``document`` as it is now."""
+        after, change = {}, NOTHING
+        for part in fields(ProjectState):
+            now, then = getattr(document, part.name), getattr(state, part.name)
+            if not _same(part.name, now, then):
+                after[part.name] = then
+                change |= cls.CHANGES[part.name]
+        if "speech" in after and document.speech is not None and state.speech is not None:
+            change &= ~Change.SPEECH if document.speech.audio is state.speech.audio else ~NOTHING
+        return cls.setting(document, f"Switch to version “{name}”", change, **after)

@@ -14,6 +14,7 @@ class ViewState:
     """The selected utterance is one idea, the playhead another, the map on show a third.
 
     slot : selected phoneme slot, or None
+    span : first and last selected slot; more than ``slot`` after `extend_to`
     playhead_s : seconds
     map_phone : phone whose Isomap is shown, or None
     """
@@ -25,17 +26,35 @@ class ViewState:
     def __init__(self, document: Document) -> None:
         self._document = document
         self.slot: int | None = None
+        self._span_end: int | None = None
         self.playhead_s = 0.0
         self.map_phone: str | None = None
 
     def select_slot(self, slot: int | None) -> None:
         """Select an utterance; the map of its phone comes up, unless it is silence or has none."""
-        self.slot = slot
+        self.slot = self._span_end = slot
         phone = self.slot_phone
         if phone is not None and phone != PAU and self._has_map(phone) and phone != self.map_phone:
             self.map_phone = phone
             self.map_chosen.emit()
         self.slot_selected.emit()
+
+    def extend_to(self, slot: int) -> None:
+        """Select everything from the selected utterance to ``slot``."""
+        if self.slot is None:
+            self.select_slot(slot)
+        elif slot != self._span_end:
+            self._span_end = slot
+            self.slot_selected.emit()
+
+    def fit(self) -> None:
+        """Select nothing that the speech no longer has."""
+        speech = self._document.speech
+        n_slots = 0 if speech is None else len(speech.transcript.phonemes)
+        if self.slot is not None and max(self.slot, self._span_end) >= n_slots:
+            self.select_slot(n_slots - 1 if n_slots else None)
+        else:
+            self.slot_selected.emit()
 
     def show_map(self, phone: str | None) -> None:
         """Show the map of ``phone`` without touching the selection."""
@@ -50,6 +69,11 @@ class ViewState:
         if time_s != self.playhead_s:
             self.playhead_s = time_s
             self.playhead_moved.emit(time_s)
+
+    @property
+    def span(self) -> tuple[int, int] | None:
+        """First and last selected slot, or None."""
+        return None if self.slot is None else (min(self.slot, self._span_end), max(self.slot, self._span_end))
 
     @property
     def slot_phone(self) -> str | None:

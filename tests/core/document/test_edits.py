@@ -26,6 +26,9 @@ class Speech:
 @dataclass(frozen=True)
 class Database:
     maps: dict
+    name: str = "made up"
+    content_hash: str = "0"
+    path: object = None
 
 
 def speech(*phones):
