@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +24,8 @@ from core.synthesis.engine import SpeechInput
 from core.synthesis.marker_motion import MarkerMotion
 from core.synthesis.silence import regenerate_silence
 from core.synthesis.smoothing import smooth_joins
+
+FindPath = Callable[[SearchRequest, Progress], MotionPath]
 
 
 @dataclass(frozen=True)
@@ -64,13 +67,21 @@ class SearchEngine:
         """Price all transitions, once, and hand them to the compute backend if it is to see them all."""
         self.costs.prepare(progress)
         if self.exhaustive:
-            self._prepared_kernels()
+            self.prepared_kernels()
 
-    def _prepared_kernels(self) -> SearchKernels:
+    def prepared_kernels(self) -> SearchKernels:
+        """Return the compute backend, which knows all transitions."""
         if not self._is_prepared:
             self.kernels.prepare(self.costs.matrix)
             self._is_prepared = True
         return self.kernels
+
+    def reweight(self, weights: SearchWeights) -> None:
+        """Search under other weights from now on."""
+        if weights != self.weights:
+            self.weights = weights
+            self.costs.reweight(weights)
+            self._is_prepared = False
 
     def request(self, speech: SpeechInput) -> SearchRequest:
         """Translate names to rows; raises `UserFacingError` for a node that the database does not have."""
@@ -83,16 +94,23 @@ class SearchEngine:
             removed=frozenset(nodes.row(name) for name in speech.removed),
         )
 
-    def synthesise(self, speech: SpeechInput, progress: Progress = SILENT) -> SearchAnswer:
-        """Find the best path and turn it into marker motion at the database's rate."""
+    def synthesise(
+        self, speech: SpeechInput, progress: Progress = SILENT, find: FindPath | None = None
+    ) -> SearchAnswer:
+        """Find the best path and turn it into marker motion at the database's rate.
+
+        find : finds the path another way, for instance by a session that was asked before; it must find the same
+        """
         request = self.request(speech)
         self.prepare(progress.part(0.0, 0.5))
         began = time.perf_counter()
         stage = progress.part(0.5, 0.9)
-        if self.exhaustive:
-            path = find_path(request, self.costs, self._prepared_kernels(), stage)
+        if find is not None:
+            path = find(request, stage)
+        elif self.exhaustive:
+            path = find_path(request, self.costs, self.prepared_kernels(), stage)
         else:
-            path = solve(request, self.costs, self._prepared_kernels, stage)
+            path = solve(request, self.costs, self.prepared_kernels, stage)
         searched = time.perf_counter()
         slots = SlotFrames.of(
             [u.start_s for u in speech.transcript.phonemes],
