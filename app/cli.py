@@ -212,6 +212,20 @@ def bench_search(
         print(bench.as_table(answer))
 
 
+@bench.command("suspicion")
+def bench_suspicion(db: Database = None, json: Json = False) -> None:
+    """Measure how well suspicion finds the demo corpus's planted faults, beside chance and plain distance."""
+    from app import suspicion_bench
+
+    database = _open(db)
+    with progress_bar("bench") as progress:
+        answer = suspicion_bench.bench_suspicion(database, progress)
+    if json:
+        print_json(answer)
+    else:
+        print(suspicion_bench.as_table(answer))
+
+
 def _open(path: Path | None):
     from app.demo import demo_database
     from core.motion.database import open_database
