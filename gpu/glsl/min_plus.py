@@ -9,7 +9,7 @@ import threading
 import numpy as np
 
 from core.errors import UserFacingError
-from core.search.compute import DeviceReport
+from core.search.compute import DeviceFailed, DeviceReport
 from gpu.sources import shader_error, shader_source
 
 _ROW_THREADS = 64
@@ -42,7 +42,8 @@ class GlslKernels:
         self._leave = self._compile(moderngl, "glsl/leave.comp", _COLUMN_THREADS)
         renderer = info["GL_RENDERER"].strip()
         is_software = any(name in renderer.lower() for name in _SOFTWARE)
-        self.report = DeviceReport("glsl", renderer, f"OpenGL {info['GL_VERSION'].split()[0]}", is_software)
+        version, _, driver = info["GL_VERSION"].partition(" ")
+        self.report = DeviceReport("glsl", renderer, f"OpenGL {version}", is_software, driver.split(") ")[-1])
 
     def _compile(self, moderngl, name: str, threads: int):
         try:
@@ -51,7 +52,7 @@ class GlslKernels:
             raise shader_error(name, str(error)) from error
 
     def prepare(self, transition: np.ndarray) -> None:
-        """See `SearchKernels.prepare`; raises `UserFacingError` when the device has not enough memory."""
+        """See `SearchKernels.prepare`; raises `DeviceFailed` when the device has not enough memory."""
         import moderngl
 
         self.release()
@@ -64,10 +65,10 @@ class GlslKernels:
                     self._pieces.append((first, len(piece), self._ctx.buffer(piece)))
                 for name in ("PrevCostBufferMap", "CostValueMap", "LeavingValueMap"):
                     self._maps[name] = self._ctx.buffer(reserve=n_nodes * 8)
+                self._check("has no room for the transition matrix")
             except moderngl.Error as error:
-                raise UserFacingError(
-                    f"The OpenGL device has no room for the transition matrix of {4 * n_nodes**2 >> 20} MiB.",
-                    "Use --backend numpy, or a smaller database.",
+                raise DeviceFailed(
+                    f"The OpenGL device has no room for the transition matrix of {4 * n_nodes**2 >> 20} MiB."
                 ) from error
 
     def min_plus(self, front: np.ndarray) -> np.ndarray:
@@ -106,7 +107,15 @@ class GlslKernels:
 
     def _read(self, name: str) -> np.ndarray:
         self._ctx.memory_barrier()
-        return np.frombuffer(self._maps[name].read(), float).copy()
+        values = np.frombuffer(self._maps[name].read(), float).copy()
+        self._check("failed")
+        return values
+
+    def _check(self, trouble: str) -> None:
+        # OpenGL does not stop at an error, as when a context is lost; it has to be asked
+        error = self._ctx.error
+        if error != "GL_NO_ERROR":
+            raise DeviceFailed(f"The OpenGL device {self.report.device} {trouble} ({error}).")
 
     def release(self) -> None:
         """See `SearchKernels.release`."""
