@@ -1,0 +1,155 @@
+"""A synthesis laid over its capture: same markers, same space, same frames."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.evaluation import measures
+from core.evaluation.measures import Roughness
+from core.motion.database import MotionDatabase
+from core.motion.head_space import in_head_space
+from core.motion.marker_set import MarkerSet
+from core.motion.recording import Recording
+from core.motion.resample import frame_bounds, resample
+from core.synthesis.marker_motion import MarkerMotion
+
+
+@dataclass(frozen=True, eq=False)
+class CapturedTruth:
+    """A recording as a synthesis is measured against it.
+
+    positions : float64, shape (n_frames, n_markers, 3), mm, head space, at the rate of the capture: the database's
+        markers, normalised as the database was
+    usable : bool, shape (n_frames,); False in long gaps and beyond the end of what is said
+    """
+
+    recording: Recording
+    markers: MarkerSet
+    positions: np.ndarray
+    usable: np.ndarray
+
+    @classmethod
+    def of(cls, recording: Recording, database: MotionDatabase) -> CapturedTruth:
+        """Normalise ``recording`` as ``database`` was; raises `UserFacingError` when it lacks one of the markers."""
+        captured = in_head_space(recording, database.markers, database.with_scale)
+        in_time = np.arange(len(captured.face)) <= recording.transcript.duration_s * recording.rate_hz
+        return cls(recording, database.markers, captured.face, in_time & ~captured.masked)
+
+    @property
+    def rate_hz(self) -> float:
+        """Frames a second of the capture."""
+        return self.recording.rate_hz
+
+    def gap_mm(self, positions: np.ndarray) -> np.ndarray | None:
+        """Return the lip gap of ``positions``, shape (n_frames,); None when the markers do not show it."""
+        upper, lower = self.markers.landmark("upper_lip"), self.markers.landmark("lower_lip")
+        return None if upper is None or lower is None else measures.lip_gap_mm(positions, upper, lower)
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """One sentence of one engine beside its capture.
+
+    synthesised : float64, like ``truth.positions``
+    n_slots, seconds : phonemes of the sentence, silences included, and what their synthesis took
+    joins, captured_joins : roughness at phone boundaries, both at the database's rate; None without such boundaries
+    """
+
+    truth: CapturedTruth
+    synthesised: np.ndarray
+    n_slots: int
+    seconds: float
+    joins: Roughness | None
+    captured_joins: Roughness | None
+
+    @classmethod
+    def of(cls, truth: CapturedTruth, motion: MarkerMotion, seconds: float) -> Comparison:
+        """Bring ``motion`` to the frames of the capture, as `core.motion.resample` does."""
+        transcript, n_frames = truth.recording.transcript, len(truth.positions)
+        raised = resample(truth.positions, truth.rate_hz, motion.rate_hz, len(motion.positions))
+        return cls(
+            truth,
+            resample(motion.positions, motion.rate_hz, truth.rate_hz, n_frames),
+            len(transcript.phonemes),
+            seconds,
+            measures.roughness_at_joins(motion.positions, transcript, motion.rate_hz),
+            measures.roughness_at_joins(raised, transcript, motion.rate_hz),
+        )
+
+
+@dataclass(frozen=True)
+class Scores:
+    """Measures of one engine over some sentences; None where markers or sentences do not allow one.
+
+    error_mm2, lip_error_mm, lip_gap_r : means over sentences
+    closure_rate : of the closures that the capture makes in p, b and m, the share that the synthesis makes
+    *_variance_ratio : of the lip gap, its velocity and acceleration, against the lightly smoothed capture
+    """
+
+    error_mm2: float
+    lip_error_mm: float | None
+    lip_gap_r: float | None
+    closure_rate: float | None
+    gap_variance_ratio: float | None
+    velocity_variance_ratio: float | None
+    acceleration_variance_ratio: float | None
+
+
+def scores(pairs: Sequence[tuple[CapturedTruth, np.ndarray]]) -> Scores:
+    """Measure synthesised positions beside their captures."""
+    lips = pairs[0][0].markers.group("lips")
+    errors, lip_errors, correlations, closed = [], [], [], []
+    tracks: list[list[tuple[np.ndarray, np.ndarray]]] = [[], [], []]
+    for truth, synthesised in pairs:
+        usable = truth.usable
+        if not usable.any():
+            continue
+        errors.append(measures.error_mm2(synthesised[usable], truth.positions[usable]))
+        if len(lips):
+            lip_errors.append(
+                measures.distance_mm(synthesised[np.ix_(usable, lips)], truth.positions[np.ix_(usable, lips)])
+            )
+        gap, captured_gap = truth.gap_mm(synthesised), truth.gap_mm(truth.positions)
+        if gap is None:
+            continue
+        correlations.append(measures.correlation(gap[usable], captured_gap[usable]))
+        closed.append(measures.closures(gap, captured_gap, truth.recording.transcript, truth.rate_hz))
+        smooth = measures.lightly_smoothed(captured_gap, truth.rate_hz)
+        for order, found in enumerate(tracks):
+            known = usable[order:] & usable[: len(usable) - order]
+            pair = (measures.derivative(track, truth.rate_hz, order)[known] for track in (gap, smooth))
+            found.append(tuple(pair))
+    n_closed = sum(c.captured for c in closed)
+    ratios = [measures.variance_ratio(*zip(*found)) if found else None for found in tracks]
+    return Scores(
+        float(np.mean(errors)) if errors else float("nan"),
+        float(np.mean(lip_errors)) if lip_errors else None,
+        float(np.mean(correlations)) if correlations else None,
+        sum(c.synthesised for c in closed) / n_closed if n_closed else None,
+        *ratios,
+    )
+
+
+def by_phoneme(pairs: Sequence[tuple[CapturedTruth, np.ndarray]]) -> Mapping[str, dict[str, float]]:
+    """Return, for each phone, how often it is said, and the mean error over its frames: all markers, and the lips."""
+    lips = pairs[0][0].markers.group("lips")
+    found: dict[str, list[tuple[np.ndarray, np.ndarray]]] = {}
+    for truth, synthesised in pairs:
+        off = synthesised - truth.positions
+        squared, lip_off = (off**2).sum(axis=2).mean(axis=1), np.linalg.norm(off[:, lips], axis=2)
+        spoken = truth.recording.transcript.phonemes
+        bounds = frame_bounds([u.start_s for u in spoken], [u.end_s for u in spoken], truth.rate_hz)
+        for utterance, start, stop in zip(spoken, *bounds):
+            frames = np.flatnonzero(truth.usable[start:stop]) + start
+            if len(frames):
+                found.setdefault(utterance.phone, []).append((squared[frames], lip_off[frames].ravel()))
+    table = {}
+    for phone in sorted(found):
+        errors, lip_errors = (np.concatenate(parts) for parts in zip(*found[phone]))
+        table[phone] = {"said": len(found[phone]), "error_mm2": float(errors.mean())}
+        if len(lips):
+            table[phone]["lip_error_mm"] = float(lip_errors.mean())
+    return table

@@ -1,0 +1,31 @@
+"""The engines that can be measured, by name. A new one adds its line here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from core.errors import UserFacingError
+from core.evaluation.engines.phone_means import PhoneMeans
+from core.evaluation.engines.random_nodes import RandomNodes
+from core.evaluation.engines.static_face import StaticFace
+from core.motion.database import MotionDatabase
+from core.search.compute import SearchKernels
+from core.search.engine import SearchEngine
+from core.synthesis.engine import MotionEngine
+
+EngineFactory = Callable[[MotionDatabase, SearchKernels], MotionEngine]
+
+ENGINES: Mapping[str, EngineFactory] = {
+    "static": lambda database, kernels: StaticFace(database),
+    "phone-means": lambda database, kernels: PhoneMeans(database),
+    "random": lambda database, kernels: RandomNodes(SearchEngine(database, kernels)),
+    "search": SearchEngine,
+}
+
+
+def make_engines(names: Sequence[str], database: MotionDatabase, kernels: SearchKernels) -> dict[str, MotionEngine]:
+    """Make the engines ``names`` (all when empty); raises `UserFacingError` for one that there is not."""
+    unknown = [name for name in names if name not in ENGINES]
+    if unknown:
+        raise UserFacingError(f"There is no engine '{unknown[0]}'.", f"Choose among {', '.join(ENGINES)}.")
+    return {name: ENGINES[name](database, kernels) for name in names or ENGINES}
