@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import os
 import re
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import BinaryIO
 
@@ -20,6 +22,7 @@ SHORTEST_S = 0.05
 LONGEST_S = 3600.0
 RATES_HZ = (4_000, 768_000)
 _BLOCK_FRAMES = 1 << 16
+_HIGHEST_FLAC_HZ = 655_350
 
 # What libsndfile's log says of a file that lost its end. A streamed WAV promises 2**31 bytes or more: that is no loss.
 _PROMISED_BYTES = re.compile(r"^\s*(?:data|SSND) : (\d+) \(should be (\d+)\)", re.MULTILINE)
@@ -45,6 +48,17 @@ class Audio:
     def duration_s(self) -> float:
         """Length in seconds."""
         return len(self.samples) / self.rate_hz
+
+    @cached_property
+    def kept(self) -> bytes:
+        """The sound as a project keeps it: a FLAC file of 24 bits, or WAV at a rate that FLAC does not know."""
+        container, subtype = ("FLAC", "PCM_24") if self.rate_hz <= _HIGHEST_FLAC_HZ else ("WAV", "FLOAT")
+        return _encoded(self, container, subtype)
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of `kept`, in hexadecimal."""
+        return hashlib.sha256(self.kept).hexdigest()
 
     @property
     def name(self) -> str:
@@ -139,8 +153,12 @@ def write_wav(audio: Audio, path: str | Path) -> None:
         )
 
 
-def encode_flac(audio: Audio) -> bytes:
-    """Return the sound as the bytes of a 16-bit FLAC file, for keeping inside a database."""
+def encode_flac(audio: Audio, subtype: str = "PCM_16") -> bytes:
+    """Return the sound as the bytes of a FLAC file, for keeping inside a database or a project."""
+    return _encoded(audio, "FLAC", subtype)
+
+
+def _encoded(audio: Audio, container: str, subtype: str) -> bytes:
     buffer = io.BytesIO()
-    soundfile.write(buffer, np.clip(audio.samples, -1, 1), audio.rate_hz, format="FLAC", subtype="PCM_16")
+    soundfile.write(buffer, np.clip(audio.samples, -1, 1), audio.rate_hz, format=container, subtype=subtype)
     return buffer.getvalue()
