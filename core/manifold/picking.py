@@ -31,23 +31,40 @@ class Pick:
         return self.weights @ frames[self.frames]
 
 
-def pick(phoneme_map: PhonemeMap, point: np.ndarray) -> Pick:
-    """Pick ``point``, shape (2,), in map coordinates."""
-    points = phoneme_map.embedding.astype(float)
-    point = np.asarray(point, float)
-    nearest = int(((points - point) ** 2).sum(axis=1).argmin())
-    triangles = phoneme_map.triangles
-    if len(triangles):
-        a, b, c = points[triangles].transpose(1, 0, 2)
-        u, v, w = b - a, c - a, point - a
+class Picker:
+    """Picks points of one map; the work that all picks share is done once, so that a pick keeps up with the pointer."""
+
+    def __init__(self, phoneme_map: PhonemeMap) -> None:
+        self._map = phoneme_map
+        self._points = phoneme_map.embedding.astype(float)
+        a, b, c = self._points[phoneme_map.triangles].transpose(1, 0, 2)
+        u, v = b - a, c - a
         area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
         with np.errstate(divide="ignore", invalid="ignore"):
-            second = (w[:, 0] * v[:, 1] - w[:, 1] * v[:, 0]) / area
-            third = (u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0]) / area
-        lowest = np.minimum(np.minimum(second, third), 1.0 - second - third)
-        lowest = np.where(np.isfinite(lowest), lowest, -np.inf)
-        best = int(lowest.argmax())
-        if lowest[best] >= -1e-9:
-            weights = np.array([1.0 - second[best] - third[best], second[best], third[best]]).clip(0.0)
-            return Pick(phoneme_map.frames[triangles[best]], weights / weights.sum(), True, nearest)
-    return Pick(phoneme_map.frames[[nearest]], np.ones(1), False, nearest)
+            second = np.column_stack([v[:, 1], -v[:, 0]]) / area[:, None]
+            third = np.column_stack([-u[:, 1], u[:, 0]]) / area[:, None]
+        flat = ~(np.isfinite(second).all(axis=1) & np.isfinite(third).all(axis=1))
+        second[flat], third[flat] = 0.0, 0.0
+        # barycentric weights of the second and third corner as linear functions of the point
+        self._slopes = np.stack([second, third])
+        self._offsets = -np.einsum("kni,ni->kn", self._slopes, a)
+        self._offsets[:, flat] = -np.inf
+
+    def pick(self, point: np.ndarray) -> Pick:
+        """Pick ``point``, shape (2,), in map coordinates."""
+        point = np.asarray(point, float)
+        nearest = int(((self._points - point) ** 2).sum(axis=1).argmin())
+        triangles, frames = self._map.triangles, self._map.frames
+        if len(triangles):
+            second, third = self._slopes @ point + self._offsets
+            lowest = np.minimum(np.minimum(second, third), 1.0 - second - third)
+            best = int(lowest.argmax())
+            if lowest[best] >= -1e-9:
+                weights = np.array([1.0 - second[best] - third[best], second[best], third[best]]).clip(0.0)
+                return Pick(frames[triangles[best]], weights / weights.sum(), True, nearest)
+        return Pick(frames[[nearest]], np.ones(1), False, nearest)
+
+
+def pick(phoneme_map: PhonemeMap, point: np.ndarray) -> Pick:
+    """Pick one ``point``, shape (2,), in map coordinates."""
+    return Picker(phoneme_map).pick(point)

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import moderngl
 import numpy as np
 
 from core.manifold.splat import CUT_SIGMAS, splat_inputs
 from gpu.gl.program import compile_program
+
+# A software driver takes some 15 ms for so many, and holds Python's lock meanwhile.
+_PIXELS_AT_ONCE = 1_000_000
 
 
 class SplatRenderer:
@@ -30,8 +35,13 @@ class SplatRenderer:
         rho: float,
         bounds: tuple[float, float, float, float],
         size: tuple[int, int],
+        between: Callable[[float], None] | None = None,
     ) -> np.ndarray:
-        """Return the picture, float32, shape (height, width, 3), 0..1, top row first; arguments as the reference's."""
+        """Return the picture, float32, shape (height, width, 3), 0..1, top row first; arguments as the reference's.
+
+        between : called with the share that is drawn, 0..1, after each piece of work of some 15 ms; what it raises ends
+            the drawing. Without it all is drawn at once
+        """
         at_px, colours = splat_inputs(points, colours, sigma_px, rho, bounds, size)
         width, height = size
         bound_before = self._ctx.detect_framebuffer()
@@ -41,9 +51,13 @@ class SplatRenderer:
         target.clear()
         if len(at_px):
             splats = np.hstack([at_px, colours]).astype(np.float32)
-            held = self._ctx.buffer(splats.tobytes())
-            self._add(held, len(splats), sigma_px, rho, size)
-            held.release()
+            covered_px = min((2 * CUT_SIGMAS * sigma_px) ** 2, width * height)
+            at_once = len(splats) if between is None else max(1, round(_PIXELS_AT_ONCE / covered_px))
+            for first in range(0, len(splats), at_once):
+                self._add(splats[first : first + at_once], sigma_px, rho, size)
+                if between is not None:
+                    self._ctx.finish()
+                    between(min(1.0, (first + at_once) / len(splats)))
         pixels = np.frombuffer(target.read(components=3, dtype="f4"), np.float32)
         bound_before.use()
         return np.minimum(pixels.reshape(height, width, 3), np.float32(1.0))
@@ -53,17 +67,19 @@ class SplatRenderer:
         self._free_target()
         self._program.release()
 
-    def _add(self, splats: moderngl.Buffer, n: int, sigma_px: float, rho: float, size: tuple[int, int]) -> None:
+    def _add(self, splats: np.ndarray, sigma_px: float, rho: float, size: tuple[int, int]) -> None:
         ctx = self._ctx
-        array = ctx.vertex_array(self._program, [(splats, "2f 3f/i", "in_at", "in_colour")])
+        held = ctx.buffer(splats.tobytes())
+        array = ctx.vertex_array(self._program, [(held, "2f 3f/i", "in_at", "in_colour")])
         ctx.enable_only(moderngl.BLEND)
         ctx.blend_func = moderngl.ONE, moderngl.ONE
         self._program["size_px"].value = size
         self._program["sigma_px"].value = sigma_px
         self._program["rho"].value = rho
-        array.render(moderngl.TRIANGLE_STRIP, vertices=4, instances=n)
+        array.render(moderngl.TRIANGLE_STRIP, vertices=4, instances=len(splats))
         ctx.enable_only(moderngl.NOTHING)
         array.release()
+        held.release()
 
     def _sized_target(self, size: tuple[int, int]) -> moderngl.Framebuffer:
         if self._target is None or self._target.size != size:

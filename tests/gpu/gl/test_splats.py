@@ -36,6 +36,25 @@ def test_gl_and_numpy_agree(splats, n, sigma_px, rho, size):
     assert np.quantile(difference, 0.98) < 2e-5
 
 
+def test_drawn_in_pieces_it_is_the_same_picture_and_can_be_stopped(splats):
+    chance = np.random.default_rng(8)
+    points, colours = chance.normal(size=(5000, 2)), chance.random((5000, 3))
+    arguments = points, colours, 8.0, 0.01, BOUNDS, (128, 128)
+    shares = []
+    pieces = splats.image(*arguments, between=shares.append)
+    assert len(shares) > 3
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+    assert np.array_equal(pieces, splats.image(*arguments))
+
+    def stop(_share):
+        raise InterruptedError
+
+    with pytest.raises(InterruptedError):
+        splats.image(*arguments, between=stop)
+    assert np.array_equal(pieces, splats.image(*arguments))
+
+
 def test_no_points_and_points_that_are_not_numbers_leave_it_dark(splats):
     assert not splats.image(np.empty((0, 2)), np.empty((0, 3)), 4.0, 0.5, BOUNDS, (20, 10)).any()
     assert not splats.image(np.full((2, 2), np.nan), np.ones((2, 3)), 4.0, 0.5, BOUNDS, (20, 10)).any()
