@@ -65,8 +65,10 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
 
     began = time.perf_counter()
     warnings = list(speech.transcript.warnings)
-    if job.backend == "auto" and kernels.report.backend == "numpy":
+    if job.backend == "auto" and kernels.report.backend == "numpy" and not kernels.lost:
         warnings.append(backend_sentence)
+    warnings += [kernels.lost] if kernels.lost else []
+    warnings += answer.warnings
     rig, video = None, job.video
     if video.style != "markers" and any(path.suffix.lower() in VIDEO_SUFFIXES for path in job.outputs):
         try:
@@ -88,6 +90,7 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
         "lower_bound": answer.path.lower_bound,
         "optimal": answer.path.is_optimal,
         "backend": backend_sentence,
+        "device": {**answer.device.as_dict(), "method": answer.method},
         "engine": job.engine,
         "text": speech.text,
         "seconds": {name: rounded_seconds(value) for name, value in seconds.items()},

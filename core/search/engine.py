@@ -11,8 +11,8 @@ import numpy as np
 from core.motion.database import MotionDatabase
 from core.progress import SILENT, Progress
 from core.search.best_path import MotionPath, find_path
-from core.search.compute import SearchKernels
-from core.search.constraints import SearchRequest
+from core.search.compute import DeviceReport, NumpyKernels, SearchKernels
+from core.search.constraints import SearchRequest, missing_phonemes
 from core.search.solve import solve
 from core.search.terms import TransitionTerms
 from core.search.transitions import TransitionCosts
@@ -30,13 +30,21 @@ FindPath = Callable[[SearchRequest, Progress], MotionPath]
 
 @dataclass(frozen=True)
 class SearchAnswer:
-    """Motion, and the path that it came from."""
+    """Motion, and the path that it came from.
+
+    device : what the path was found on; None when the caller found it
+    method : "relaxation", "exhaustive", or "session" for a path that the caller found
+    warnings : sentences about slots that the database serves badly
+    """
 
     motion: MarkerMotion
     path: MotionPath
     slots: SlotFrames
     search_s: float
     synthesis_s: float
+    device: DeviceReport | None = None
+    method: str = "session"
+    warnings: tuple[str, ...] = ()
 
 
 class SearchEngine:
@@ -92,6 +100,7 @@ class SearchEngine:
             emotions=emotion_weights([u.start_s for u in utterances], [u.end_s for u in utterances], speech.modifiers),
             pins={slot: nodes.row(name) for slot, name in speech.pins.items()},
             removed=frozenset(nodes.row(name) for name in speech.removed),
+            start_s=tuple(u.start_s for u in utterances),
         )
 
     def synthesise(
@@ -106,11 +115,9 @@ class SearchEngine:
         began = time.perf_counter()
         stage = progress.part(0.5, 0.9)
         if find is not None:
-            path = find(request, stage)
-        elif self.exhaustive:
-            path = find_path(request, self.costs, self.prepared_kernels(), stage)
+            path, device, method = find(request, stage), None, "session"
         else:
-            path = solve(request, self.costs, self.prepared_kernels, stage)
+            path, device, method = self._search(request, stage)
         searched = time.perf_counter()
         slots = SlotFrames.of(
             [u.start_s for u in speech.transcript.phonemes],
@@ -119,7 +126,25 @@ class SearchEngine:
         )
         motion = self.motion_of(path.nodes, request.phonemes, slots)
         progress.step(1.0, "motion made")
-        return SearchAnswer(motion, path, slots, searched - began, time.perf_counter() - searched)
+        synthesis_s = time.perf_counter() - searched
+        warnings = missing_phonemes(request, self.database.nodes)
+        return SearchAnswer(motion, path, slots, searched - began, synthesis_s, device, method, warnings)
+
+    def _search(self, request: SearchRequest, progress: Progress) -> tuple[MotionPath, DeviceReport, str]:
+        """Return the best path, and what it was found on, by which method."""
+        asked = []
+
+        def kernels() -> SearchKernels:
+            asked.append(True)
+            return self.prepared_kernels()
+
+        if self.exhaustive:
+            path = find_path(request, self.costs, kernels(), progress)
+        else:
+            path = solve(request, self.costs, kernels, progress)
+        if asked:
+            return path, self.kernels.report, "exhaustive"
+        return path, NumpyKernels.report, "relaxation"
 
     def motion_of(self, path: np.ndarray, phonemes: np.ndarray, slots: SlotFrames) -> MarkerMotion:
         """Concatenate, warp, smooth, regenerate silence, and go back to markers (section 7.2)."""

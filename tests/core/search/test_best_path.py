@@ -1,6 +1,8 @@
 """The search against enumeration of every path."""
 
 import itertools
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ from core.errors import UserFacingError
 from core.motion.node import NIL
 from core.search.best_path import find_path
 from core.search.compute import NumpyKernels
-from core.search.constraints import SearchRequest
+from core.search.constraints import SearchRequest, missing_phonemes
 from core.search.terms import TransitionTerms, default_weights, emotion_mismatch_penalties, observation_costs
 from core.search.transitions import TransitionCosts
 from core.speech.phoneme import PHONEMES
@@ -105,19 +107,42 @@ def test_equal_costs_go_to_the_lowest_row(random_motion):
     assert tuple(find_path(silence, costs, kernels).nodes.tolist()) == min(tied, key=lambda path: path[::-1])
 
 
-def test_infeasible_requests_name_the_slot(random_motion):
+def test_infeasible_requests_name_the_slot_and_what_mends_it(random_motion):
     frames, nodes = random_motion(11)
     costs, kernels = prepared(frames, nodes)
-    phonemes, emotions = np.zeros(3, int), np.eye(4)[[0] * 3]
+    phonemes, emotions = np.array([PHONEMES.index(p) for p in ("pau", "b", "s")]), np.eye(4)[[0] * 3]
+    everyone = frozenset(range(len(nodes)))
+    asked = partial(SearchRequest, phonemes, emotions, start_s=(0.0, 0.25, 0.5))
     cases = [
-        (SearchRequest(phonemes, emotions, {1: 4}, frozenset({4})), "Slot 1"),
-        (SearchRequest(phonemes, emotions, {7: 4}), "slot 7"),
-        (SearchRequest(phonemes, emotions, {}, frozenset(range(len(nodes)))), "Every motion node"),
-        (SearchRequest(phonemes[:0], emotions[:0]), "no phoneme"),
+        (asked(pins={1: 4}, removed={4}), f"{nodes.name(4)}, pinned to slot 1 (/b/ at 0.25 s), was removed", "unpin"),
+        (asked(pins={2: 4}, removed=everyone), "slot 2 (/s/ at 0.50 s)", "Restore the node"),
+        (asked(removed=everyone), "slot 0 (/pau/ at 0.00 s): every motion node", "Restore some"),
+        (SearchRequest(phonemes, emotions, removed=everyone), "slot 0 (/pau/): every motion node", "Restore some"),
+        (asked(pins={7: 4}), "pinned to slot 7, but the sentence has slots 0 to 2", ""),
+        (asked(pins={1: len(nodes)}), "slot 1 (/b/ at 0.25 s) is not in the database", "Unpin"),
+        (SearchRequest(phonemes[:0], emotions[:0]), "no phoneme", ""),
     ]
-    for request, words in cases:
-        with pytest.raises(UserFacingError, match=words):
+    for request, message, remedy in cases:
+        with pytest.raises(UserFacingError) as refused:
             find_path(request, costs, kernels)
+        assert message in refused.value.message
+        assert remedy in refused.value.remedy
+
+
+def test_a_phone_without_nodes_is_answered_and_said(random_motion):
+    frames, nodes = random_motion(13, phones="aa b k pau")
+    costs, kernels = prepared(frames, nodes)
+    phonemes = np.array([PHONEMES.index(p) for p in ("b", "aa", "zh", "b", "pau")])
+    of_b = frozenset(np.flatnonzero(nodes.phoneme == PHONEMES.index("b")).tolist())
+    request = SearchRequest(phonemes, np.eye(4)[[0] * 5], removed=of_b)
+    answer = find_path(request, costs, kernels)
+    assert len(of_b) > 1 and not of_b & set(answer.nodes.tolist())
+    removed, absent = missing_phonemes(request, nodes)
+    assert removed.startswith("Every motion node of /b/ was removed") and "slot 0 (/b/) and 1 more." in removed
+    assert absent.startswith("The database has no motion of /zh/") and "slot 2 (/zh/)." in absent
+    assert missing_phonemes(replace(request, removed=frozenset(list(of_b)[1:])), nodes) == (absent,)
+    pinned = replace(request, pins={0: 0, 2: 0, 3: 0}, removed=of_b - {0})
+    assert missing_phonemes(pinned, nodes) == ()
 
 
 def test_a_chain_needs_a_predecessor(random_motion):
