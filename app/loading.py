@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from app import texts
 from app.pictures import FaceRig
-from core.document.document import AlignedSpeech, FaceChoice
+from core.document.parts import AlignedSpeech, FaceChoice, Speech
+from core.errors import UserFacingError
 from core.media.audio import Audio
+from core.motion.curation import CurationList, Removal
 from core.motion.database import MotionDatabase
 from core.motion.marker_set import MarkerSet
 from core.progress import Progress
 from core.search.engine import SearchEngine
-from core.speech.transcript import Transcript
 
 _TEXT_SUFFIX = ".txt"
 _BESIDE_SPEECH = (".TextGrid", ".textgrid", ".lab", ".txt")
@@ -22,14 +24,14 @@ _BESIDE_FACE = (".markers.csv", ".csv")
 
 @dataclass(frozen=True)
 class SpeechRequest:
-    """Speech to load: a sound file, and its text (or a text file) or a transcript file, or neither."""
+    """Speech to load: sound or its file, and its text (or a text file) or a transcript file, or neither."""
 
-    audio: Path
+    audio: Path | Audio
     text: str | None = None
     phones: Path | None = None
 
     @classmethod
-    def with_file(cls, audio: Path, transcript: Path) -> SpeechRequest:
+    def with_file(cls, audio: Path | Audio, transcript: Path) -> SpeechRequest:
         """Take a transcript file: a text file holds words, unless its first line is one of ``start end phone``."""
         if transcript.suffix.lower() == _TEXT_SUFFIX and not _holds_times(transcript):
             return cls(audio, text=str(transcript))
@@ -50,27 +52,23 @@ def face_beside_markers(mesh: Path) -> FaceChoice:
 
 @dataclass(frozen=True)
 class OpenedDatabase:
-    """A database with its engine, and what computes."""
+    """A database with its engine, what computes, and which of its motion nodes are removed.
+
+    trouble : (sentence, remedy) about a curation list that cannot be read, or nothing
+    """
 
     database: MotionDatabase
     engine: SearchEngine
     backend: str
-
-
-@dataclass(frozen=True)
-class BundledSpeech:
-    """A sentence that comes with the workstation."""
-
-    audio: Audio
-    transcript: Transcript
-    text: str
+    removals: Mapping[str, Removal]
+    trouble: tuple[str, str] | tuple[()] = ()
 
 
 @dataclass(frozen=True)
 class DemoSentence:
     """Bundled speech and the emotion that it is spoken in."""
 
-    speech: BundledSpeech
+    speech: Speech
     emotion: str
 
 
@@ -86,7 +84,12 @@ def open_motion_database(path: Path | None, progress: Progress) -> OpenedDatabas
     progress.step(0.0, texts.OPENING_DATABASE)
     database = demo_database(progress) if path is None else open_database(path)
     kernels, backend = open_kernels()
-    return OpenedDatabase(database, SearchEngine(database, kernels), backend)
+    removals, trouble = {}, ()
+    try:
+        removals = CurationList.of(database).read()
+    except UserFacingError as error:
+        trouble = error.message, error.remedy
+    return OpenedDatabase(database, SearchEngine(database, kernels), backend, removals, trouble)
 
 
 def load_demo_sentence(name: str, _progress: Progress) -> DemoSentence:
@@ -95,14 +98,18 @@ def load_demo_sentence(name: str, _progress: Progress) -> DemoSentence:
     from core.media.audio import load_audio
 
     spoken = next(s for s in demo_sentences() if s.sentence == name)
-    return DemoSentence(BundledSpeech(load_audio(spoken.audio), transcript_of(spoken), spoken.text), spoken.emotion)
+    speech = Speech(load_audio(spoken.audio), transcript_of(spoken), spoken.text)
+    speech.audio.digest  # noqa: B018  computed here, off the main thread
+    return DemoSentence(speech, spoken.emotion)
 
 
 def read_speech(request: SpeechRequest, progress: Progress) -> AlignedSpeech:
     """Read speech and align it."""
     from app.speech import load_speech
 
-    return load_speech(request.audio, request.text, request.phones, progress=progress)
+    speech = load_speech(request.audio, request.text, request.phones, progress=progress)
+    speech.audio.digest  # noqa: B018  computed here, off the main thread
+    return speech
 
 
 def fit_face(request: tuple[FaceChoice, MarkerSet], progress: Progress) -> FaceRig:

@@ -5,12 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from app.child_process import run_apart
 from core.errors import UserFacingError
 from core.media.audio import Audio, load_audio
 from core.progress import SILENT, Progress
 from core.speech import text_file
 from core.speech.emotion import EmotionModifier, emotion_named
+from core.speech.lexicon import Lexicon, read_lexicon
 from core.speech.transcript import Transcript
+
+# pocketsphinx holds Python's lock all the while it works: up to 0.2 s for alignment of sound this long, more than 1 s
+# for recognition of any. Longer work goes to a process of its own, whose start takes half a second.
+_LONGEST_ALIGNED_HERE_S = 6.0
+_DIED = "The process that listens to the speech ended before it was done."
 
 
 @dataclass(frozen=True)
@@ -24,14 +31,14 @@ class LoadedSpeech:
 
 
 def load_speech(
-    audio_path: Path,
+    sound: Path | Audio,
     text: str | None = None,
     phones: Path | None = None,
     lexicon: Path | None = None,
     strict: bool = False,
     progress: Progress = SILENT,
 ) -> LoadedSpeech:
-    """Load a sound file and align it.
+    """Load a sound file, unless the sound is at hand, and align it.
 
     text : what is said, or the path of a text file with it; aligned by force
     phones : a TextGrid, label or plain phone file instead; without either the speech is recognised first
@@ -39,22 +46,34 @@ def load_speech(
     strict : refuse phones that are not in our set instead of taking the nearest
     Raises `UserFacingError` naming the file that is wrong.
     """
-    from core.speech.aligner import align, recognise
-    from core.speech.lexicon import read_lexicon
     from core.speech.transcript_files import read_transcript
 
     if text is not None and phones is not None:
         raise UserFacingError("A text and a phone file were given; one of them says what is spoken.")
-    audio = load_audio(audio_path)
+    audio = sound if isinstance(sound, Audio) else load_audio(sound)
     if phones is not None:
         transcript = read_transcript(phones, audio.duration_s, strict=strict)
         return LoadedSpeech(audio, transcript, " ".join(w.word for w in transcript.words), False)
     words = read_lexicon(lexicon) if lexicon is not None else None
     if text is not None:
         said = read_text(text)
-        return LoadedSpeech(audio, align(audio, said, lexicon=words, progress=progress), said, False)
-    said, transcript = recognise(audio, lexicon=words, progress=progress)
+        return LoadedSpeech(audio, _aligned(audio, said, words, progress), said, False)
+    said, transcript = _recognised(audio, words, progress)
     return LoadedSpeech(audio, transcript, said, True)
+
+
+def _aligned(audio: Audio, text: str, lexicon: Lexicon | None, progress: Progress) -> Transcript:
+    from core.speech.aligner import align
+
+    if audio.duration_s <= _LONGEST_ALIGNED_HERE_S:
+        return align(audio, text, lexicon, progress)
+    return run_apart(align, (audio, text, lexicon), progress, _DIED)
+
+
+def _recognised(audio: Audio, lexicon: Lexicon | None, progress: Progress) -> tuple[str, Transcript]:
+    from core.speech.aligner import recognise
+
+    return run_apart(recognise, (audio, lexicon), progress, _DIED)
 
 
 def read_text(text: str) -> str:

@@ -92,9 +92,9 @@ class ControlPanel(QWidget):
     def align(self, then_synthesise: bool = False) -> None:
         """Fit the transcript that is written here to the sound."""
         speech = self._authoring.document.speech
-        if speech is not None and speech.audio.path is not None:
+        if speech is not None:
             text = self.transcript.toPlainText().strip() or None
-            self._authoring.load_speech(SpeechRequest(Path(speech.audio.path), text), then_synthesise)
+            self._authoring.load_speech(SpeechRequest(speech.audio, text), then_synthesise)
 
     @property
     def transcript_is_new(self) -> bool:

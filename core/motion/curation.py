@@ -53,15 +53,13 @@ class Removal:
         return cls(who[:LONGEST_TEXT], datetime.now(UTC).isoformat(timespec="seconds"), why[:LONGEST_TEXT])
 
 
-def curation_path(database: MotionDatabase) -> Path | None:
-    """Return where the list of ``database`` is kept: beside it; None when it was never stored.
+def curation_path(database: MotionDatabase) -> Path:
+    """Return where the list of ``database`` is kept: beside it.
 
-    The demo's lies in the cache, where it is made anew when it has to be: its list lies in the data folder, by name.
+    The demo's lies in the cache, where it is made anew when it has to be (and one made in memory lies nowhere): such a
+    list lies in the data folder, by the database's name.
     """
-    if database.path is None:
-        return None
-    path = Path(database.path)
-    if path.parent.absolute() == cache_dir().absolute():
+    if database.path is None or (path := Path(database.path)).parent.absolute() == cache_dir().absolute():
         return data_dir() / "curation" / f"{re.sub('[^0-9A-Za-z]+', '-', database.name)[:80]}{SUFFIX}"
     return path.with_name(path.name + SUFFIX)
 
@@ -71,6 +69,11 @@ class CurationList:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+
+    @classmethod
+    def of(cls, database: MotionDatabase) -> CurationList:
+        """Return the list of ``database``."""
+        return cls(curation_path(database))
 
     def read(self) -> dict[str, Removal]:
         """Return the removed nodes by public name; nothing was removed while there is no file.
