@@ -19,11 +19,13 @@ from app.panels.message_bar import MessageBar
 from app.panels.motion import MotionPane
 from app.panels.preview import PreviewPane
 from app.panels.status import StatusLine
+from app.panels.timeline.bar import TimelinePane
 from app.panels.timeline.timeline import Timeline
 from app.panels.video import VideoPane
 from app.settings import last_folder, remember_folder, window_settings
 from core.document.change import Change
 from core.document.document import FaceChoice
+from core.speech.emotion import EMOTIONS
 
 DEMO_START = "demo-neutral"
 _SIZE = (1600, 1000)
@@ -72,7 +74,8 @@ class MainWindow(QMainWindow):
         lower = splitter(across, "lower", self.isomap, self.preview)
         panes = splitter(down, "panes", upper, lower)
         body = splitter(across, "body", self.control, panes)
-        whole = splitter(down, "whole", body, self.timeline)
+        self.timeline_pane = TimelinePane(self.timeline)
+        whole = splitter(down, "whole", body, self.timeline_pane)
         body.setStretchFactor(1, 1)
         whole.setStretchFactor(0, 1)
         self._splitters = [upper, lower, panes, body, whole]
@@ -97,7 +100,8 @@ class MainWindow(QMainWindow):
             row.setSizes([(width - WIDTH_PX) // 2, (width - WIDTH_PX) // 2])
         panes.setSizes([height * 9 // 20, height * 7 // 20])
         body.setSizes([WIDTH_PX, width - WIDTH_PX])
-        whole.setSizes([height - self.timeline.sizeHint().height(), self.timeline.sizeHint().height()])
+        strip = self.timeline_pane.sizeHint().height()
+        whole.setSizes([height - strip, strip])
 
     def _make_menus(self) -> None:
         a, authoring, add = self.actions, self.authoring, self.actions.add
@@ -144,6 +148,11 @@ class MainWindow(QMainWindow):
         add(time, "zoom_out", texts.ACTION_ZOOM_OUT, "-", lambda: self.timeline.zoom(1 / 1.5))
         add(time, "zoom_all", texts.ACTION_ZOOM_ALL, "0", self.timeline.zoom_all)
 
+        time.addSeparator()
+        for e, emotion in enumerate(EMOTIONS):
+            add(time, f"brush_{emotion}", texts.ACTION_BRUSH.format(emotion=emotion), str(e + 1),
+                lambda emotion=emotion: self.timeline.set_brush(emotion))  # fmt: skip
+
         view = a.menu(texts.MENU_VIEW)
         add(view, "frame_view", texts.ACTION_FRAME_VIEW, "F", self.frame_view)
         add(view, "front", texts.ACTION_FRONT, "Ctrl+1", lambda: self._look("frame_view"))
@@ -151,7 +160,7 @@ class MainWindow(QMainWindow):
         view.addSeparator()
         head = add(view, "head", texts.ACTION_HEAD, "", lambda: authoring.set_head_moves(head.isChecked()))
         head.setCheckable(True)
-        head.setChecked(authoring.head_moves)
+        head.setChecked(authoring.document.output.head_moves)
         view.addSeparator()
         add(view, "reset_layout", texts.ACTION_RESET_LAYOUT, "", self._default_layout)
         chosen = self._settings.value("theme", "dark")
@@ -193,12 +202,12 @@ class MainWindow(QMainWindow):
     def ask_transcript(self) -> None:
         """Choose a transcript for the sound."""
         speech = self.authoring.document.speech
-        if speech is None or speech.audio.path is None:
+        if speech is None:
             self.message.say(texts.SYNTHESISE_NEEDS_SPEECH + ".")
             return
         path = self._ask_file("speech", texts.OPEN_TRANSCRIPT, texts.FILTER_TRANSCRIPT)
         if path is not None:
-            self.authoring.load_speech(SpeechRequest.with_file(Path(speech.audio.path), path))
+            self.authoring.load_speech(SpeechRequest.with_file(speech.audio, path))
 
     def ask_emotions(self) -> None:
         """Choose an emotion specification."""
@@ -259,7 +268,7 @@ class MainWindow(QMainWindow):
 
     def on_frame_rate(self, name: str) -> None:
         """Take another output rate."""
-        self.authoring.film.set_frame_rate(name)
+        self.authoring.set_frame_rate(name)
         self.motion.on_playhead_moved(self.authoring.view.playhead_s)
 
     def on_theme(self, name: str) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from PySide6.QtCore import QLineF, QRectF, Qt
-from PySide6.QtGui import QLinearGradient, QPainter, QPen
+from PySide6.QtGui import QBrush, QLinearGradient, QPainter, QPen
 
 from app.theme import colour, small_font, theme
 from core.speech.emotion import EMOTIONS, EmotionModifier, emotion_weights
@@ -84,6 +84,23 @@ def paint_emotions(
                 bottom -= height
                 painter.fillRect(QRectF(x, bottom, min(_MIX_COLUMN_PX, right - x), height),
                                  colour(theme().emotion[EMOTIONS[e]], 0.7))  # fmt: skip
+
+
+def paint_locks(painter: QPainter, area: QRectF, scale: TimeScale, slots: list[tuple[float, float]]) -> None:
+    """Hatch the slots that no edit may move."""
+    hatch = QBrush(colour(theme().dim, 0.45), Qt.BrushStyle.BDiagPattern)
+    for start_s, end_s in slots:
+        painter.fillRect(QRectF(scale.x(start_s), area.top() + 1, scale.x(end_s) - scale.x(start_s), area.height() - 2),
+                         hatch)  # fmt: skip
+
+
+def paint_changed(painter: QPainter, area: QRectF, scale: TimeScale, slots: list[tuple[float, float]]) -> None:
+    """Outline the slots that the last edit gave another motion node."""
+    painter.setPen(QPen(colour(theme().accent), 1))
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    for start_s, end_s in slots:
+        left, right = scale.x(start_s), scale.x(end_s)
+        painter.drawRect(QRectF(left + 1.5, area.top() + 1.5, max(right - left - 3, 1), area.height() - 3))
 
 
 def paint_playhead(painter: QPainter, area: QRectF, x: float) -> None:

@@ -10,13 +10,13 @@ from PySide6.QtGui import QPainter
 
 from app.panels.timeline.lanes import TimeScale
 from app.theme import colour, small_font, theme
+from core.media.video import timecode
 
 SECONDS, FRAMES, TIMECODE = "seconds", "frames", "timecode"
 UNITS = (SECONDS, FRAMES, TIMECODE)
 _STEPS_S = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0)
 _STEPS_FRAMES = (1, 2, 5, 10)
 _TICK_PX = 72
-_MINUTE_S, _HOUR_S = 60, 3600
 
 
 @dataclass(frozen=True)
@@ -53,15 +53,6 @@ class Ruler:
             return f"{time_s:.{digits}f} s"
         frame = self.first_frame + int(time_s * self.fps + Fraction(1, 1000))
         return str(frame) if self.unit == FRAMES else timecode(frame, self.fps)
-
-
-def timecode(frame: int, fps: Fraction) -> str:
-    """Write a frame as HH:MM:SS:FF, without dropping frame numbers (29.97 counts 30 to its second)."""
-    whole = round(fps)
-    seconds, frames = divmod(frame, whole)
-    hours, seconds = divmod(seconds, _HOUR_S)
-    minutes, seconds = divmod(seconds, _MINUTE_S)
-    return f"{hours:02d}:{minutes:02d}:{seconds:02d}:{frames:02d}"
 
 
 def paint_ruler(painter: QPainter, area: QRectF, scale: TimeScale, end_s: float, ruler: Ruler) -> None:

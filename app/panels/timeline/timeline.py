@@ -1,46 +1,74 @@
-"""The strip below the panes: what is said and when, and where the playhead is."""
+"""The lanes: what is said and when, what it costs, what it feels like, and where the playhead is."""
 
 from __future__ import annotations
 
-from PySide6.QtCore import QRectF, QSize, Qt
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QPainter, QPixmap
 from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
 
 from app import texts
 from app.authoring import Authoring
-from app.panels.timeline.lanes import TimeScale, paint_boxes, paint_emotions, paint_playhead, paint_selection
-from app.panels.timeline.ruler import Ruler, paint_ruler
-from app.panels.timeline.wave import Peaks, paint_wave
-from app.theme import STEP, colour, small_font, theme
+from app.panels.timeline.gestures import DragBoundary, Gesture, PaintEmotion, Scrub
+from app.panels.timeline.lanes import TimeScale, paint_playhead
+from app.panels.timeline.phoneme_menu import PhonemeEditor, phoneme_menu
+from app.panels.timeline.picture import paint_lanes
+from app.panels.timeline.ruler import Ruler
+from app.panels.timeline.snapping import FREE, PHONEMES, WORDS
+from app.panels.timeline.wave import Peaks
+from app.theme import STEP, colour, theme
 from core.document.change import Change
+from core.document.document import Document, Edit
+from core.errors import UserFacingError
 from core.media.audio import Audio
+from core.media.video import FRAME_RATES
 from core.progress import Progress
 from core.speech.phoneme import PAU
+from core.speech.spectrogram import Spectrogram
 
 _NAMES_PX = 9 * STEP
-_RULER_PX, _WAVE_PX, _BOX_PX, _EMOTION_PX = 22, 56, 24, 24
+_HEIGHTS_PX = {"ruler": 22, "wave": 0, "words": 22, "phonemes": 24, "emotion": 32, "cost": 26, "price": 18}
+_WAVE_PX, _LEAST_WAVE_PX = 56, 24
 _RIGHT_PX = 2 * STEP
 _ZOOM_PER_STEP = 1.25
 _STEP_ANGLE = 120.0
-_DRAG_PX = 4
+_EDGE_PX = 5
 _NARROWEST_S = 0.05
+_PAN_SHARE = 0.12
 
 
 class Timeline(QWidget):
-    """Lanes over one time axis. Click selects an utterance and moves the playhead, drag scrubs, wheel zooms."""
+    """Lanes over one time axis.
+
+    Click selects an utterance and moves the playhead, drag scrubs, wheel zooms. Edges of phonemes can be dragged, the
+    emotion lane is painted with the brush.
+
+    brush_changed(emotion) : for whoever shows the brush
+    """
+
+    brush_changed = Signal(str)
 
     def __init__(self, authoring: Authoring) -> None:
         super().__init__()
-        self._authoring = authoring
-        self._peaks: Peaks | None = None
+        self.authoring = authoring
+        self.peaks: Peaks | None = None
+        self.spectrogram: Spectrogram | None = None
+        self.brush, self.snap, self.ruler = "happiness", PHONEMES, Ruler()
+        self._wants_spectrogram = False
         self._start_s, self._shown_s = 0.0, 1.0
-        self._pressed_at: float | None = None
-        self._dragging = False
+        self._gesture: Gesture | None = None
+        self._used: np.ndarray | None = None
+        self.changed_slots: tuple[int, ...] = ()
         self._lanes_picture: QPixmap | None = None  # painted once; only the playhead moves sixty times a second
+        self._editor = PhonemeEditor(self)
         self.setStatusTip(texts.TIMELINE_TIP)
+        self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        self.setMinimumHeight(_RULER_PX + 32 + 2 * _BOX_PX + _EMOTION_PX)
+        self.setMinimumHeight(sum(_HEIGHTS_PX.values()) + _LEAST_WAVE_PX)
         authoring.document.changed.connect(self.on_document_changed)
         authoring.view.slot_selected.connect(self.renew)
         authoring.view.playhead_moved.connect(self.on_playhead_moved)
@@ -48,37 +76,73 @@ class Timeline(QWidget):
     @property
     def duration_s(self) -> float:
         """Length of the speech."""
-        speech = self._authoring.document.speech
+        speech = self.authoring.document.speech
         return 0.0 if speech is None else speech.transcript.duration_s
 
     @property
     def scale(self) -> TimeScale:
         """Where times are on screen now."""
-        width = max(self.width() - _NAMES_PX - _RIGHT_PX, 1)
-        return TimeScale(self._start_s, width / self._shown_s, _NAMES_PX)
+        return TimeScale(self._start_s, max(self.time_area().width(), 1.0) / self._shown_s, _NAMES_PX)
+
+    def time_area(self) -> QRectF:
+        """Return the part of the widget that time runs through."""
+        return QRectF(_NAMES_PX, 0, self.width() - _NAMES_PX - _RIGHT_PX, self.height())
 
     def lanes(self) -> dict[str, QRectF]:
         """Return the area of each lane; the wave takes what height is left."""
-        left, right = _NAMES_PX, self.width() - _RIGHT_PX
-        heights = {"ruler": _RULER_PX, "wave": 0, "words": _BOX_PX, "phonemes": _BOX_PX, "emotion": _EMOTION_PX}
-        heights["wave"] = max(self.height() - sum(heights.values()) - STEP // 2, 24)
+        area = self.time_area()
+        heights = dict(_HEIGHTS_PX)
+        heights["wave"] = max(self.height() - sum(heights.values()) - STEP // 2, _LEAST_WAVE_PX)
         areas, top = {}, 0
         for name, height in heights.items():
-            areas[name] = QRectF(left, top, right - left, height)
+            areas[name] = QRectF(area.left(), top, area.width(), height)
             top += height
         return areas
+
+    def snap_units(self) -> list[tuple[float, float]]:
+        """Return the spans that a stroke covers whole; none when it is free."""
+        transcript = self.authoring.document.speech.transcript
+        units = {FREE: (), PHONEMES: transcript.phonemes, WORDS: transcript.words}[self.snap]
+        return [(unit.start_s, unit.end_s) for unit in units]
 
     # Reactions
 
     def on_document_changed(self, change: Change, _origin: object) -> None:
-        """Show other speech, emotions or pins."""
-        if change & Change.ALIGNMENT:
-            self._peaks = None
+        """Show other speech, boundaries, emotions, pins or costs."""
+        if change & Change.SPEECH:
+            self.peaks = self.spectrogram = None
             self.zoom_all()
-            speech = self._authoring.document.speech
+            speech = self.authoring.document.speech
             if speech is not None:
-                self._authoring.jobs.start("peaks", "", speech.audio, _peaks, self._show_peaks)
+                self.authoring.jobs.start("peaks", "", speech.audio, _peaks, self._show_peaks)
+                self.show_spectrogram(self._wants_spectrogram)
+        if change & Change.OUTPUT:
+            output = self.authoring.document.output
+            self.ruler = replace(self.ruler, fps=FRAME_RATES[output.frame_rate], first_frame=output.start_frame)
+        if change & Change.PATH:
+            self._find_changed()
+        if change & Change.ALIGNMENT:
+            self._give_up()
         self.renew()
+
+    def _find_changed(self) -> None:
+        """Tell which slots another node says since the motion before; none when all of it is new."""
+        answer = self.authoring.document.answer
+        used = None if answer is None else np.asarray(answer.path.nodes)
+        comparable = used is not None and self._used is not None and len(used) == len(self._used)
+        self.changed_slots = tuple(np.flatnonzero(used != self._used).tolist()) if comparable else ()
+        self._used = used
+
+    def ask(self, make_edit: Callable[[Document], Edit]) -> None:
+        """Do an edit of the document, or say why it cannot be done."""
+        try:
+            edit = make_edit(self.authoring.document)
+        except UserFacingError as error:
+            self.authoring.failed.emit(error.message, error.remedy)
+            return
+        self.authoring.push(edit)
+        if edit.note:
+            self.authoring.noted.emit(edit.note)
 
     def renew(self) -> None:
         """Paint the lanes anew."""
@@ -87,12 +151,44 @@ class Timeline(QWidget):
 
     def on_playhead_moved(self, time_s: float) -> None:
         """Move the playhead; while it plays beyond the edge, turn the page."""
-        if self._authoring.player.is_playing and not self._start_s <= time_s <= self._start_s + self._shown_s:
+        if self.authoring.player.is_playing and not self._start_s <= time_s <= self._start_s + self._shown_s:
             self._look_at(time_s, self._shown_s)
         self.update()
 
     def _show_peaks(self, peaks: Peaks) -> None:
-        self._peaks = peaks
+        self.peaks = peaks
+        self.renew()
+
+    def _show_spectrogram(self, spectrogram: Spectrogram) -> None:
+        self.spectrogram = spectrogram
+        self.renew()
+
+    # Ways of working
+
+    def set_brush(self, emotion: str) -> None:
+        """Paint with another emotion; neutral erases."""
+        self.brush = emotion
+        self.brush_changed.emit(emotion)
+
+    def set_snap(self, snap: str) -> None:
+        """Let strokes cover whole phonemes, whole words, or just what they touch."""
+        self.snap = snap
+
+    def show_spectrogram(self, shown: bool) -> None:
+        """Show the spectrogram behind the wave, or the wave alone."""
+        self._wants_spectrogram = shown
+        speech = self.authoring.document.speech
+        if shown and speech is not None:
+            title = texts.MAKING_SPECTROGRAM
+            self.authoring.jobs.start("spectrogram", title, speech.audio, _spectrogram, self._show_spectrogram)
+        else:
+            self.authoring.jobs.cancel("spectrogram")
+            self.spectrogram = None
+            self.renew()
+
+    def set_unit(self, unit: str) -> None:
+        """Write times in seconds, frames or timecode."""
+        self.ruler = replace(self.ruler, unit=unit)
         self.renew()
 
     # Looking
@@ -103,33 +199,69 @@ class Timeline(QWidget):
 
     def zoom(self, factor: float, around_s: float | None = None) -> None:
         """Show everything ``factor`` times as wide; ``around_s`` (or the playhead) stays where it is."""
-        around_s = self._authoring.view.playhead_s if around_s is None else around_s
+        around_s = self.authoring.view.playhead_s if around_s is None else around_s
         shown_s = min(max(self._shown_s / factor, _NARROWEST_S), max(self.duration_s, _NARROWEST_S))
         self._look_at(around_s - (around_s - self._start_s) * shown_s / self._shown_s, shown_s)
+
+    def pan(self, pages: float) -> None:
+        """Look earlier or later, in widths of what is shown."""
+        self._look_at(self._start_s + pages * self._shown_s, self._shown_s)
 
     def _look_at(self, start_s: float, shown_s: float) -> None:
         self._shown_s = shown_s
         self._start_s = min(max(start_s, 0.0), max(self.duration_s - shown_s, 0.0))
+        self._editor.hide()
         self.renew()
 
-    def _slot_at(self, x: float) -> int | None:
-        return self._authoring.view.slot_at(min(max(self.scale.time_s(x), 0.0), self.duration_s))
+    def slot_at(self, x: float) -> int | None:
+        """Return the slot at a place, or None left of the lanes or without speech."""
+        if x < _NAMES_PX - _EDGE_PX:
+            return None
+        return self.authoring.view.slot_at(min(max(self.scale.time_s(x), 0.0), self.duration_s))
+
+    def _lane_at(self, y: float) -> str:
+        return next((name for name, area in self.lanes().items() if y < area.bottom()), "price")
+
+    def _edge_at(self, at: QPointF) -> int | None:
+        """Return the slot whose end is under the pointer in the phoneme lane."""
+        if self.authoring.document.speech is None or self._lane_at(at.y()) != "phonemes":
+            return None
+        ends = [self.scale.x(u.end_s) for u in self.authoring.document.speech.transcript.phonemes[:-1]]
+        near = min(range(len(ends)), key=lambda p: abs(ends[p] - at.x()), default=None)
+        return near if near is not None and abs(ends[near] - at.x()) <= _EDGE_PX else None
+
+    def slot_box(self, slot: int) -> QRectF:
+        """Return where a phoneme is on screen."""
+        utterance, lane = self.authoring.document.speech.transcript.phonemes[slot], self.lanes()["phonemes"]
+        left = self.scale.x(utterance.start_s)
+        return QRectF(left, lane.top(), self.scale.x(utterance.end_s) - left, lane.height())
+
+    def rename(self, slot: int) -> None:
+        """Let the phone of a slot be typed."""
+        self._editor.open(slot)
+
+    def _give_up(self) -> None:
+        if self._gesture is not None:
+            self._gesture.cancel()
+            self._gesture = None
+        self._editor.hide()
 
     # Qt
 
     def sizeHint(self) -> QSize:
         """Ask for room for all lanes."""
-        return QSize(800, _RULER_PX + _WAVE_PX + 2 * _BOX_PX + _EMOTION_PX + STEP // 2)
+        return QSize(800, sum(_HEIGHTS_PX.values()) + _WAVE_PX + STEP // 2)
 
     def resizeEvent(self, event) -> None:
         """Paint the lanes anew."""
         super().resizeEvent(event)
+        self._editor.hide()
         self.renew()
 
     def paintEvent(self, _event) -> None:
-        """Paint the kept picture of the lanes, and the playhead over it."""
+        """Paint the kept picture of the lanes, and what moves over it."""
         painter = QPainter(self)
-        if self._authoring.document.speech is None:
+        if self.authoring.document.speech is None:
             painter.fillRect(self.rect(), colour(theme().canvas))
             painter.setPen(colour(theme().dim))
             painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, texts.TIMELINE_EMPTY)
@@ -138,75 +270,67 @@ class Timeline(QWidget):
             ratio = self.devicePixelRatioF()
             self._lanes_picture = QPixmap(self.size() * ratio)
             self._lanes_picture.setDevicePixelRatio(ratio)
-            self._paint_lanes(self._lanes_picture)
+            paint_lanes(self, self._lanes_picture)
         painter.drawPixmap(0, 0, self._lanes_picture)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        area = self._time_area()
-        x = self.scale.x(self._authoring.view.playhead_s)
+        area = self.time_area()
+        x = self.scale.x(self.authoring.view.playhead_s)
         if area.left() - 1 <= x <= area.right() + 1:
             paint_playhead(painter, area, x)
-
-    def _time_area(self) -> QRectF:
-        return QRectF(_NAMES_PX, 0, self.width() - _NAMES_PX - _RIGHT_PX, self.height())
-
-    def _paint_lanes(self, picture: QPixmap) -> None:
-        picture.fill(colour(theme().canvas))
-        painter = QPainter(picture)
-        document, view = self._authoring.document, self._authoring.view
-        lanes, scale, transcript = self.lanes(), self.scale, document.speech.transcript
-        self._paint_names(painter, lanes)
-        area = self._time_area()
-        painter.setClipRect(area)
-        if view.slot is not None:
-            chosen = transcript.phonemes[view.slot]
-            paint_selection(painter, area, scale.x(chosen.start_s), scale.x(chosen.end_s))
-        paint_ruler(painter, lanes["ruler"], scale, self.duration_s, Ruler())
-        if self._peaks is not None:
-            paint_wave(painter, lanes["wave"], scale, self._peaks, self.duration_s)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        words = [(w.word, w.start_s, w.end_s) for w in transcript.words]
-        paint_boxes(painter, lanes["words"], scale, words, None)
-        phones = [(u.phone, u.start_s, u.end_s) for u in transcript.phonemes]
-        paint_boxes(painter, lanes["phonemes"], scale, phones, view.slot, frozenset(document.pins))
-        paint_emotions(painter, lanes["emotion"], scale, document.modifiers, self.duration_s)
-        painter.end()
-
-    def _paint_names(self, painter: QPainter, lanes: dict[str, QRectF]) -> None:
-        painter.setFont(small_font())
-        names = {"wave": texts.LANE_WAVE, "words": texts.LANE_WORDS, "phonemes": texts.LANE_PHONEMES,
-                 "emotion": texts.LANE_EMOTION}  # fmt: skip
-        for key, name in names.items():
-            area = lanes[key]
-            painter.setPen(colour(theme().dim))
-            painter.drawText(
-                QRectF(STEP + 4, area.top(), _NAMES_PX, area.height()), Qt.AlignmentFlag.AlignVCenter, name
-            )
-            painter.setPen(colour(theme().line, 0.6))
-            painter.drawLine(0, round(area.top()), self.width(), round(area.top()))
+        if self._gesture is not None:
+            self._gesture.paint(painter)
 
     def mousePressEvent(self, event) -> None:
-        """Wait whether this is a click or a drag."""
-        if event.button() == Qt.MouseButton.LeftButton and self._authoring.document.speech is not None:
-            self._pressed_at, self._dragging = event.position().x(), False
+        """Begin what a drag does here."""
+        if event.button() != Qt.MouseButton.LeftButton or self.authoring.document.speech is None:
+            return
+        self._editor.hide()
+        at = event.position()
+        edge = self._edge_at(at)
+        if edge is not None:
+            self._gesture = DragBoundary(self, edge)
+        elif self._lane_at(at.y()) == "emotion" and at.x() >= _NAMES_PX:
+            self._gesture = PaintEmotion(self, at)
+        else:
+            extends = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
+            self._gesture = Scrub(self, at, extends)
+        self.update()
 
     def mouseMoveEvent(self, event) -> None:
-        """Scrub."""
-        if self._pressed_at is None:
+        """Go on with the drag, or show what could be dragged."""
+        if self._gesture is not None:
+            self._gesture.move(event.position())
             return
-        x = event.position().x()
-        if abs(x - self._pressed_at) >= _DRAG_PX:
-            self._dragging = True
-        if self._dragging:
-            self._authoring.seek(self.scale.time_s(x))
+        on_edge = self._edge_at(event.position()) is not None
+        paints = self._lane_at(event.position().y()) == "emotion" and self.authoring.document.speech is not None
+        cursor = Qt.CursorShape.ArrowCursor
+        if on_edge:
+            cursor = Qt.CursorShape.SplitHCursor
+        elif paints:
+            cursor = Qt.CursorShape.CrossCursor
+        if self.cursor().shape() != cursor:
+            self.setCursor(cursor)
 
     def mouseReleaseEvent(self, event) -> None:
-        """Select what was clicked."""
-        if self._pressed_at is not None and not self._dragging:
-            x = event.position().x()
-            slot = self._slot_at(x)
-            if slot is not None and x >= _NAMES_PX - _DRAG_PX:
-                self._authoring.select_slot(slot, self.scale.time_s(x))
-        self._pressed_at, self._dragging = None, False
+        """Do what the drag showed."""
+        if event.button() == Qt.MouseButton.LeftButton and self._gesture is not None:
+            gesture, self._gesture = self._gesture, None
+            gesture.release(event.position())
+            self.update()
+
+    def mouseDoubleClickEvent(self, event) -> None:
+        """Rename a phoneme."""
+        slot = self.slot_at(event.position().x())
+        if slot is not None and self._lane_at(event.position().y()) == "phonemes":
+            self._gesture = None
+            self.rename(slot)
+
+    def contextMenuEvent(self, event) -> None:
+        """Offer what can be done with the utterance under the pointer."""
+        slot = self.slot_at(event.pos().x())
+        if slot is not None:
+            time_s = self.scale.time_s(event.pos().x())
+            phoneme_menu(self, slot, time_s).popup(event.globalPos())
 
     def wheelEvent(self, event) -> None:
         """Zoom around the pointer; with Shift, or sideways, move."""
@@ -214,10 +338,18 @@ class Timeline(QWidget):
         if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
             across, along = across + along, 0.0
         if across:
-            self._look_at(self._start_s - 0.12 * across * self._shown_s, self._shown_s)
+            self.pan(-_PAN_SHARE * across)
         if along:
             self.zoom(_ZOOM_PER_STEP**along, self.scale.time_s(event.position().x()))
         event.accept()
+
+    def keyPressEvent(self, event) -> None:
+        """Escape gives up a drag."""
+        if event.key() == Qt.Key.Key_Escape and self._gesture is not None:
+            self._give_up()
+            self.update()
+        else:
+            super().keyPressEvent(event)
 
     def event(self, event) -> bool:
         """Say in the tooltip what is under the pointer."""
@@ -227,18 +359,35 @@ class Timeline(QWidget):
         return super().event(event)
 
     def _describe(self, event) -> None:
-        speech = self._authoring.document.speech
-        slot = None if speech is None else self._slot_at(event.pos().x())
-        if slot is None or event.pos().x() < _NAMES_PX:
+        slot = self.slot_at(event.pos().x())
+        if slot is None:
             QToolTip.hideText()
             return
-        utterance = speech.transcript.phonemes[slot]
+        QToolTip.showText(event.globalPos(), self.description(slot, self._lane_at(event.pos().y())), self)
+
+    def description(self, slot: int, lane: str) -> str:
+        """Return what there is to know of a slot, in a lane."""
+        document = self.authoring.document
+        utterance = document.speech.transcript.phonemes[slot]
         phone = texts.SILENCE if utterance.phone == PAU else f"/{utterance.phone}/"
-        text = texts.UTTERANCE.format(phone=phone, milliseconds=1000 * (utterance.end_s - utterance.start_s))
-        if slot in self._authoring.document.pins:
-            text += "\n" + texts.PINNED.format(node=self._authoring.document.pins[slot])
-        QToolTip.showText(event.globalPos(), text, self)
+        lines = [texts.UTTERANCE.format(phone=phone, milliseconds=1000 * (utterance.end_s - utterance.start_s))]
+        if slot in document.pins:
+            lines.append(texts.PINNED.format(node=document.pins[slot]))
+        if slot in document.locks:
+            lines.append(texts.LOCKED)
+        if lane == "cost" and document.breakdown is not None:
+            unit = document.cost_unit
+            terms = document.breakdown[slot].items()
+            lines += [texts.COST_TERM.format(term=texts.TERMS[name], cost=v / unit) for name, v in terms if v > 0]
+            lines.append(texts.COST_OF_SLOT.format(cost=sum(document.breakdown[slot].values()) / unit))
+        if lane == "price" and document.next_best_prices is not None:
+            lines.append(texts.NEXT_BEST.format(price=document.next_best_prices[slot] / document.cost_unit))
+        return "\n".join(lines)
 
 
 def _peaks(audio: Audio, _progress: Progress) -> Peaks:
     return Peaks.of(audio)
+
+
+def _spectrogram(audio: Audio, _progress: Progress) -> Spectrogram:
+    return Spectrogram.of(audio)

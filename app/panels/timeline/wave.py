@@ -41,8 +41,10 @@ class Peaks:
         return low, np.maximum.reduceat(self.high[: at[-1] + 1], at)[:-1]
 
 
-def paint_wave(painter: QPainter, area: QRectF, scale: TimeScale, peaks: Peaks, end_s: float) -> None:
-    """Lowest and highest sample of each pixel column, on the scale of the loudest."""
+def paint_wave(
+    painter: QPainter, area: QRectF, scale: TimeScale, peaks: Peaks, end_s: float, faint: bool = False
+) -> None:
+    """Lowest and highest sample of each pixel column, on the scale of the loudest; faint over a spectrogram."""
     loudest = max(float(np.abs(peaks.low).max()), float(np.abs(peaks.high).max()), 1e-6)
     middle, half = area.center().y(), area.height() / 2 - 2
     left, right = int(max(area.left(), scale.x(0.0))), int(min(area.right(), scale.x(end_s)))
@@ -52,7 +54,7 @@ def paint_wave(painter: QPainter, area: QRectF, scale: TimeScale, peaks: Peaks, 
     low, high = peaks.columns(scale.start_s + (places - scale.left_px) / scale.px_per_s)
     tops, bottoms = middle - half * high / loudest - 0.5, middle - half * low / loudest + 0.5
     lines = [QLineF(x + 0.5, top, x + 0.5, bottom) for x, top, bottom in zip(places, tops, bottoms)]
-    painter.setPen(QPen(colour(theme().dim, 0.9), 1))
+    painter.setPen(QPen(colour(theme().accent, 0.35) if faint else colour(theme().dim, 0.9), 1))
     painter.drawLines(lines)
 
 
