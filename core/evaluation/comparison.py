@@ -86,7 +86,8 @@ class Scores:
 
     error_mm2, lip_error_mm, lip_gap_r : means over sentences
     closure_rate : of the closures that the capture makes in p, b and m, the share that the synthesis makes
-    *_variance_ratio : of the lip gap, its velocity and acceleration, against the lightly smoothed capture
+    *_variance_ratio : of the lip gap, its velocity and acceleration, against the lightly smoothed capture; both at the
+        rate of video, if the capture is faster
     """
 
     error_mm2: float
@@ -117,10 +118,11 @@ def scores(pairs: Sequence[tuple[CapturedTruth, np.ndarray]]) -> Scores:
             continue
         correlations.append(measures.correlation(gap[usable], captured_gap[usable]))
         closed.append(measures.closures(gap, captured_gap, truth.recording.transcript, truth.rate_hz))
-        smooth = measures.lightly_smoothed(captured_gap, truth.rate_hz)
+        rate_hz, (gap, captured_gap, known) = _at_video_rate(truth, gap, captured_gap)
+        smooth = measures.lightly_smoothed(captured_gap)
         for order, found in enumerate(tracks):
-            known = usable[order:] & usable[: len(usable) - order]
-            pair = (measures.derivative(track, truth.rate_hz, order)[known] for track in (gap, smooth))
+            kept = known[order:] & known[: len(known) - order]
+            pair = (measures.derivative(track, rate_hz, order)[kept] for track in (gap, smooth))
             found.append(tuple(pair))
     n_closed = sum(c.captured for c in closed)
     ratios = [measures.variance_ratio(*zip(*found)) if found else None for found in tracks]
@@ -131,6 +133,19 @@ def scores(pairs: Sequence[tuple[CapturedTruth, np.ndarray]]) -> Scores:
         sum(c.synthesised for c in closed) / n_closed if n_closed else None,
         *ratios,
     )
+
+
+def _at_video_rate(
+    truth: CapturedTruth, gap: np.ndarray, captured_gap: np.ndarray
+) -> tuple[float, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Bring gaps and usable frames of a faster capture down to `measures.LIVELINESS_HZ`, both by `resample`."""
+    rate_hz, slower_hz = truth.rate_hz, measures.LIVELINESS_HZ
+    if rate_hz <= 1.01 * slower_hz:
+        return rate_hz, (gap, captured_gap, truth.usable)
+    n_frames = int((len(gap) - 1) / rate_hz * slower_hz) + 1
+    place = np.arange(n_frames) * rate_hz / slower_hz
+    known = truth.usable[np.floor(place).astype(int)] & truth.usable[np.ceil(place).astype(int)]
+    return slower_hz, (*(resample(track, rate_hz, slower_hz, n_frames) for track in (gap, captured_gap)), known)
 
 
 def by_phoneme(pairs: Sequence[tuple[CapturedTruth, np.ndarray]]) -> Mapping[str, dict[str, float]]:

@@ -129,7 +129,7 @@ def noise_floor(truths: Sequence[CapturedTruth]) -> Scores:
 
     No engine can be expected to come nearer, and an engine that copies captures copies their noise.
     """
-    smoothed = scores([(truth, lightly_smoothed(truth.positions, truth.rate_hz)) for truth in truths])
+    smoothed = scores([(truth, lightly_smoothed(truth.positions)) for truth in truths])
     raw = scores([(truth, truth.positions) for truth in truths])
     return replace(
         smoothed, gap_variance_ratio=raw.gap_variance_ratio, velocity_variance_ratio=raw.velocity_variance_ratio,

@@ -16,7 +16,9 @@ from core.motion.resample import frame_bounds
 from core.speech.phoneme import PAU
 from core.speech.transcript import Transcript
 
-SMOOTHING_S = 0.1  # half the window of the light smoothing
+# Liveliness is compared at the rate of video: at 120 Hz a smoothing as long as that of 25 Hz takes half of real speech
+# away, and a shorter one leaves what no camera of the other corpus would have seen.
+LIVELINESS_HZ = 25.0
 CLOSED_MM = 2.0
 BILABIALS = ("p", "b", "m")
 
@@ -49,14 +51,9 @@ def correlation(synthesised: np.ndarray, captured: np.ndarray) -> float:
     return float(a @ b / scale) if min(np.abs(a).max(), np.abs(b).max()) > still else 0.0
 
 
-def lightly_smoothed(track: np.ndarray, rate_hz: float) -> np.ndarray:
-    """Savitzky–Golay of order 2 along time, over as many frames as lie within 0.1 s of one: 5 at 25 Hz, 25 at 120.
-
-    At 25 Hz this is the window of 5 frames that the jitter of tracked video asks for; at other rates it lasts as long.
-    A track shorter than the window is smoothed over all of it.
-    """
-    length = min(2 * int(SMOOTHING_S * rate_hz + 1e-9) + 1, len(track) - 1 + len(track) % 2)
-    return savgol_filter(track, length, 2, axis=0) if length > 2 else np.array(track, float)
+def lightly_smoothed(track: np.ndarray) -> np.ndarray:
+    """Savitzky–Golay of order 2 over 5 frames: at 25 Hz it takes out the jitter of tracked video, and little else."""
+    return savgol_filter(track, 5, 2, axis=0) if len(track) >= 5 else np.array(track, float)
 
 
 def derivative(track: np.ndarray, rate_hz: float, order: int) -> np.ndarray:
@@ -64,16 +61,18 @@ def derivative(track: np.ndarray, rate_hz: float, order: int) -> np.ndarray:
     return np.diff(track, n=order, axis=0) * rate_hz**order
 
 
-def variance_ratio(synthesised: Sequence[np.ndarray], captured: Sequence[np.ndarray]) -> float:
+def variance_ratio(synthesised: Sequence[np.ndarray], captured: Sequence[np.ndarray]) -> float | None:
     """Variance of the synthesised tracks over that of the captured ones; 1 is as alive, less is dull, more jittery.
 
     One track a sentence; each varies about its own mean, and variances are averaged over all frames of all sentences.
+    None when the captured tracks hold still.
     """
 
     def variance(tracks: Sequence[np.ndarray]) -> float:
-        return sum(((t - t.mean()) ** 2).sum() for t in tracks) / sum(len(t) for t in tracks)
+        return sum(((t - t.mean()) ** 2).sum() for t in tracks if len(t)) / max(1, sum(len(t) for t in tracks))
 
-    return float(variance(synthesised) / variance(captured))
+    alive = variance(captured)
+    return float(variance(synthesised) / alive) if alive > 0 else None
 
 
 class Closures(NamedTuple):
