@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -13,6 +14,7 @@ from core.speech.emotion import EMOTIONS
 from core.speech.phoneme import PAU, PHONEMES, VISEME_OF_PHONEME
 
 NIL = -1
+CONTEXT_REACH = 5  # phones to either side that a motion node knows of
 _ORDER = re.compile("[0-9]{1,9}")
 
 
@@ -82,6 +84,22 @@ class NodeTable:
     def n_frames(self) -> np.ndarray:
         """Number of frames of each node, shape (n_nodes,)."""
         return self.stop - self.start
+
+    @cached_property
+    def context(self) -> np.ndarray:
+        """Phones captured around each node, uint8, shape (2, `CONTEXT_REACH`, n_nodes): before, after; nearest first.
+
+        From the first silence on, and beyond the sentence's edge, stands ``pau``.
+        """
+        pau = PHONEMES.index(PAU)
+        around = np.full((2, CONTEXT_REACH, len(self)), pau, np.uint8)
+        for side, (nearest, link) in enumerate(((self.previous, self.pre), (self.following, self.suc))):
+            at = np.arange(len(self))
+            for d in range(CONTEXT_REACH):
+                known = at != NIL
+                around[side, d, known] = nearest[at[known]]
+                at = np.where(known, link[at], NIL)
+        return around
 
     def name(self, row: int) -> str:
         """Return the public name, ``sentence:order``, which survives a database that grows."""

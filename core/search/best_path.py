@@ -10,6 +10,7 @@ from core.motion.node import NodeTable
 from core.progress import SILENT, Progress
 from core.search.compute import SearchKernels
 from core.search.constraints import SearchRequest, blocked_nodes, check_feasible
+from core.search.context import SILENCE, context_costs, duration_costs
 from core.search.terms import emotion_mismatch_penalties, observation_costs
 from core.search.transitions import TransitionCosts
 from core.search.weights import SearchWeights
@@ -74,9 +75,22 @@ def find_path(
     return priced(path, request, costs)
 
 
+def observed(request: SearchRequest, slot: int, nodes: NodeTable, weights: SearchWeights) -> np.ndarray:
+    """OC of one slot for every node, float64, shape (n_nodes,): table 2, `core.search.context`, and surcharges."""
+    cost = observation_costs(request.phonemes[slot : slot + 1], nodes, weights)[0]
+    if weights.context_before or weights.context_after:
+        cost += context_costs(request.phonemes, slot, nodes, weights)
+    if weights.duration and request.lengths is not None and request.phonemes[slot] != SILENCE:
+        cost += duration_costs(request.lengths[slot], nodes, weights)
+    if request.surcharges and slot not in request.pins:
+        rows = np.fromiter(request.surcharges.keys(), int)
+        cost[rows] += weights.pnt * np.fromiter(request.surcharges.values(), float)
+    return cost
+
+
 def slot_costs(request: SearchRequest, slot: int, nodes: NodeTable, weights: SearchWeights) -> np.ndarray:
     """OC + EMP + B of one slot for every node; float64, shape (n_nodes,); inf where blocked."""
-    cost = observation_costs(request.phonemes[slot : slot + 1], nodes, weights)[0]
+    cost = observed(request, slot, nodes, weights)
     cost += emotion_mismatch_penalties(request.emotions[slot : slot + 1], nodes, weights)[0]
     cost[blocked_nodes(request, slot, len(nodes))] = np.inf
     return cost
@@ -88,7 +102,7 @@ def priced(
     """Break the cost of ``path`` down by slot and term. Without a ``lower_bound`` the path is known to be optimal."""
     nodes, weights = costs.terms.nodes, costs.weights
     slots = np.arange(request.n_slots)
-    observation = np.array([observation_costs(request.phonemes[p : p + 1], nodes, weights)[0, path[p]] for p in slots])
+    observation = np.array([observed(request, p, nodes, weights)[path[p]] for p in slots])
     emotion = weights.alpha6 * weights.pnt * (1.0 - request.emotions[slots, nodes.emotion[path]])
     arriving = np.zeros(request.n_slots)
     for p in slots[1:]:

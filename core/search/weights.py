@@ -20,6 +20,12 @@ class SearchWeights:
     alpha4 : discount (0..1) for a phone of the right viseme class
     alpha5 : a phone that does not match, in pnt
     alpha6 : emotion mismatch, in pnt
+
+    Beyond the paper; 0 turns each off:
+
+    context_before, context_after : a neighbour, one phone before or after, that does not match, in pnt
+    context_decay : what each further phone counts, as a share (0..1) of the one nearer by
+    duration : a node warped to e times its length, or to 1/e of it, in pnt (squared log ratio)
     """
 
     pnt: float
@@ -29,6 +35,10 @@ class SearchWeights:
     alpha4: float = 0.3
     alpha5: float = 5.0
     alpha6: float = 2.0
+    context_before: float = 0.0
+    context_after: float = 0.0
+    context_decay: float = 0.7
+    duration: float = 0.0
 
     def __post_init__(self) -> None:
         for field in fields(self):
