@@ -55,7 +55,8 @@ def mean_poses(database: MotionDatabase) -> np.ndarray:
     means = np.empty((len(EMOTIONS), len(PHONEMES), poses.shape[1]))
     for e in range(len(EMOTIONS)):
         for p in range(len(PHONEMES)):
-            likely = ((phoneme == p) & (emotion == e), phoneme == p, viseme[phoneme] == viseme[p])
+            same, alike, felt = phoneme == p, viseme[phoneme] == viseme[p], emotion == e
+            likely = (same & felt, same, alike & felt, alike)
             found = next((rows for rows in likely if rows.any()), None)
             means[e, p] = database.rest_coefficients if found is None else poses[found].mean(axis=0)
     return means
