@@ -2,67 +2,42 @@
 
 from __future__ import annotations
 
-import os
-import platform
 import statistics
-import sys
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
+from app.machine import MemoryReader, forget_peak, peak_mb, timed
 from core.actress.corpus import demo_sentences, transcript_of
 from core.errors import UserFacingError
 from core.motion.database import MotionDatabase
 from core.progress import SILENT, Progress
 from core.search.best_path import MotionPath, find_path
-from core.search.compute import DeviceReport, SearchKernels
+from core.search.compute import DeviceReport, NumpyKernels, SearchKernels
 from core.search.constraints import SearchRequest
 from core.search.relaxation import find_path_by_relaxation
 from core.search.replicate import replicated
 from core.search.session import SearchSession
+from core.search.solve import solve
 from core.search.tables import SearchTables
 from core.search.terms import TransitionTerms, default_weights
 from core.search.transitions import TransitionCosts
 from core.speech.emotion import EMOTION_INDEX, EMOTIONS
 from core.speech.phoneme import PHONEME_INDEX
-from gpu.device import open_kernels
+from gpu.device import describe, open_kernels
 
 PAPER_LENGTHS = (14, 24, 53, 63)  # Deng and Neumann 2008, table 5
-BACKENDS = ("reference", "numpy32", "numpy", "opencl", "glsl", "relaxation")
+BACKENDS = ("reference", "numpy32", "numpy", "opencl", "glsl", "middle", "relaxation")
 _PAINTED_SLOTS = 8
-
-
-@dataclass(frozen=True)
-class Machine:
-    """What the figures were taken on; bandwidth is reading memory by all cores, bytes a second."""
-
-    processor: str
-    cores: int
-    read_bytes_per_s: float
-
-    def as_dict(self) -> dict[str, object]:
-        """Return it for ``--json``."""
-        return {
-            "processor": self.processor,
-            "cores": self.cores,
-            "read_gb_per_s": round(self.read_bytes_per_s / 1e9, 2),
-            "python": platform.python_version(),
-            "numpy": np.__version__,
-        }
-
-
-def measure_machine(repeats: int = 7) -> Machine:
-    """Measure how fast all cores together read 512 MiB of float32 that no cache holds; the best of ``repeats``."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    data = np.ones(128 << 20, np.float32)
-    parts = np.array_split(data, cores)
-    with ThreadPoolExecutor(cores) as pool:
-        best = min(_timed(lambda: list(pool.map(np.max, parts))) for _ in range(repeats))
-    return Machine(_processor(), cores, data.nbytes / best)
+_MOST_S = 20.0  # a median is taken of fewer runs when they would take longer
+_FEWEST = 3
+# every row has them; None where a way of searching has no such thing
+_FIELDS = ("phonemes", "nodes", "backend", "device", "api", "driver", "software", "cold_s", "pin_s", "refresh_s",
+           "second_pin_s", "paint_s", "prices_s", "build_s", "bytes_moved", "read_gb_per_s", "fraction_of_bandwidth",
+           "speedup_vs_reference", "optimal", "gap", "cost", "peak_mb", "repeats", "edit_repeats", "tables_on",
+           "missing")  # fmt: skip
 
 
 def bench_search(
@@ -73,7 +48,10 @@ def bench_search(
     repeats: int = 20,
     progress: Progress = SILENT,
 ) -> dict[str, object]:
-    """Measure cold searches, edits and prices; returns {machine, rows}, times being medians of ``repeats``.
+    """Measure cold searches, edits and prices; returns {machine, rows}.
+
+    Times are medians of ``repeats`` runs, or of as many as 20 s allow; ``repeats`` and ``edit_repeats`` of a row tell.
+    The memory's speed is measured between the runs of a row, so that a busy machine slows both.
 
     n_nodes : the database is repeated with variation, or cut, to this many nodes
     """
@@ -81,27 +59,30 @@ def bench_search(
     if strangers:
         raise UserFacingError(f"There is no backend '{strangers[0]}' to measure.", f"Known are {', '.join(BACKENDS)}.")
     progress.step(0.0, "measuring memory")
-    machine = measure_machine()
+    memory = MemoryReader()
+    machine = memory.machine()
     frames, nodes = database.frames, database.nodes
     if n_nodes is not None and n_nodes != len(nodes):
         frames, nodes = replicated(frames, nodes, n_nodes, database.rate_hz)
     weights = default_weights(frames, nodes, database.rate_hz)
     costs = TransitionCosts(TransitionTerms(frames, nodes, database.rate_hz), weights)
-    build_s = _timed(lambda: costs.prepare(progress.part(0.05, 0.2)))
+    build_s = timed(lambda: costs.prepare(progress.part(0.05, 0.2)))
     rows = []
     for i, backend in enumerate(backends):
         stage = progress.part(0.2 + 0.8 * i / len(backends), 0.2 + 0.8 * (i + 1) / len(backends))
+        forget_peak()
         try:
-            measured = _Backend.open(backend, costs, machine, repeats)
+            way = _Way.open(backend, costs)
         except UserFacingError as error:
             rows.append({"backend": backend, "nodes": len(nodes), "missing": error.message})
             continue
         for k, length in enumerate(phonemes):
             stage.step(k / len(phonemes), f"{backend}, {length} phonemes")
-            rows.append({**measured.row(utterance(length)), "build_s": round(build_s, 3)})
-        measured.kernels.release()
+            rows.append({**_row(way, utterance(length), memory, repeats), "build_s": build_s})
+        way.kernels.release()
+    memory.close()
     _compare(rows)
-    return {"machine": machine.as_dict(), "rows": rows}
+    return {"machine": machine.as_dict(), "rows": [{name: row.get(name) for name in _FIELDS} for row in rows]}
 
 
 def utterance(n_slots: int) -> SearchRequest:
@@ -117,95 +98,138 @@ def utterance(n_slots: int) -> SearchRequest:
 
 
 @dataclass
-class _Backend:
-    """One way to search, ready to be measured."""
+class _Way:
+    """One way to search, ready to be measured.
+
+    kernels : keep the tables of its session
+    bytes_of : what a cold search of so many slots reads of the matrix; None where that is not the measure
+    has_session : whether edits are measured; the reference and its float32 twin only know cold searches
+    """
 
     name: str
     solve: Callable[[SearchRequest], MotionPath]
     kernels: SearchKernels
     report: DeviceReport
     costs: TransitionCosts
-    machine: Machine
-    repeats: int
+    bytes_of: Callable[[int], int] | None = None
+    has_session: bool = True
 
     @classmethod
-    def open(cls, name: str, costs: TransitionCosts, machine: Machine, repeats: int) -> _Backend:
-        kernels, _ = open_kernels(name if name in ("opencl", "glsl") else "numpy")
+    def open(cls, name: str, costs: TransitionCosts) -> _Way:
+        """Open a way by its name; raises `UserFacingError` when it cannot be had here."""
+        if not costs.is_held:
+            if name != "relaxation":
+                raise UserFacingError(
+                    f"The transitions of {len(costs.terms.nodes)} motion nodes are beyond the memory budget."
+                )
+            kernels = NumpyKernels()
+            return cls(name, lambda r: solve(r, costs, lambda: kernels), kernels, kernels.report, costs,
+                       has_session=False)  # fmt: skip
+        matrix_bytes = costs.matrix.nbytes
+        if name in ("reference", "numpy32"):
+            dtype = np.float64 if name == "reference" else np.float32
+            plain = _PlainKernels(costs.matrix, dtype)
+            return cls(name, lambda r: find_path(r, costs, plain), plain, plain.report, costs,
+                       lambda n_slots: (n_slots - 1) * plain.matrix_bytes, has_session=False)  # fmt: skip
+        kernels, _ = open_kernels(name if name in ("numpy", "opencl", "glsl") else "auto")
         kernels.prepare(costs.matrix)
-        report = kernels.report
-        if name == "reference":
-            reference, report = _FloatReference(costs.matrix, np.float64), replace(report, api="numpy float64")
-            return cls(name, lambda r: find_path(r, costs, reference), kernels, report, costs, machine, repeats)
-        if name == "numpy32":
-            reference, report = _FloatReference(costs.matrix, np.float32), replace(report, api="numpy float32")
-            return cls(name, lambda r: find_path(r, costs, reference), kernels, report, costs, machine, repeats)
         if name == "relaxation":
-            # the quickest kernels that are here keep the tables behind it
-            kernels.release()
-            kernels, _ = open_kernels("auto")
-            kernels.prepare(costs.matrix)
-            report = replace(kernels.report, backend="relaxation")
-            return cls(name, lambda r: find_path_by_relaxation(r, costs), kernels, report, costs, machine, repeats)
-        return cls(name, lambda r: find_path(r, costs, kernels), kernels, report, costs, machine, repeats)
-
-    def row(self, request: SearchRequest) -> dict[str, object]:
-        n_nodes = len(self.costs.terms.nodes)
-        path = self.solve(request)
-        cold_s = self._median(lambda: self.solve(request))
-        row: dict[str, object] = {
-            "phonemes": request.n_slots, "nodes": n_nodes, "backend": self.name, "device": self.report.device,
-            "api": self.report.api, "software": self.report.software, "cold_s": cold_s,
-        }  # fmt: skip
-        if self.name not in ("relaxation", "reference", "numpy32"):
-            bytes_read = (request.n_slots - 1) * n_nodes**2 * 4
-            row["fraction_of_bandwidth"] = bytes_read / cold_s / self.machine.read_bytes_per_s
-            row["bytes_moved"] = bytes_read
-            row["middle_s"] = self._median(lambda: SearchTables(request, self.costs, self.kernels).best())
-        if self.name not in ("reference", "numpy32"):
-            row.update(self._edits(request))
-        row.update(optimal=path.is_optimal, gap=path.gap, cost=path.cost, peak_mb=_peak_mb())
-        return row
-
-    def _edits(self, request: SearchRequest) -> dict[str, float]:
-        """Times of a pin, of painting eight slots, of whole tables after a pin, and of the price table from nothing."""
-        session = SearchSession(request, self.costs, self.kernels)
-        prices_s = _timed(session.refresh)
-        rng = np.random.default_rng(request.n_slots)
-        n_nodes = len(self.costs.terms.nodes)
-        pins, refreshes, paints = [], [], []
-        for _ in range(self.repeats):
-            slot = int(rng.integers(request.n_slots))
-            same = np.flatnonzero(self.costs.terms.nodes.phoneme == request.phonemes[slot])
-            node = int(rng.choice(same)) if len(same) else int(rng.integers(n_nodes))
-            pinned = replace(request, pins={slot: node})
-            pins.append(_timed(lambda: session.update(pinned)))  # noqa: B023 - called at once
-            refreshes.append(_timed(session.refresh))
-            session.update(request)
-            session.refresh()
-            first = int(rng.integers(max(1, request.n_slots - _PAINTED_SLOTS)))
-            painted = request.emotions.copy()
-            painted[first : first + _PAINTED_SLOTS] = np.eye(len(EMOTIONS))[rng.integers(len(EMOTIONS))]
-            paints.append(_timed(lambda: session.update(replace(request, emotions=painted))))  # noqa: B023
-            session.update(request)
-            session.refresh()
-        return {"pin_s": statistics.median(pins), "refresh_s": statistics.median(refreshes),
-                "paint_s": statistics.median(paints), "prices_s": prices_s}  # fmt: skip
-
-    def _median(self, work: Callable[[], object]) -> float:
-        return statistics.median(_timed(work) for _ in range(self.repeats))
+            return cls(name, lambda r: find_path_by_relaxation(r, costs), kernels, NumpyKernels.report, costs)
+        if name == "middle":
+            return cls(name, lambda r: _meet_in_the_middle(r, costs, kernels), kernels, kernels.report, costs,
+                       lambda n_slots: n_slots // 2 * matrix_bytes)  # fmt: skip
+        return cls(name, lambda r: find_path(r, costs, kernels), kernels, kernels.report, costs,
+                   lambda n_slots: (n_slots - 1) * matrix_bytes)  # fmt: skip
 
 
-class _FloatReference:
+def _meet_in_the_middle(request: SearchRequest, costs: TransitionCosts, kernels: SearchKernels) -> MotionPath:
+    # several paths that cost the same are settled by the plain search
+    return SearchTables(request, costs, kernels).best() or find_path(request, costs, kernels)
+
+
+def _row(way: _Way, request: SearchRequest, memory: MemoryReader, repeats: int) -> dict[str, object]:
+    path = way.solve(request)
+    seconds, readings = [], []
+    began = time.perf_counter()
+    while len(seconds) < repeats and (len(seconds) < _FEWEST or time.perf_counter() - began < _MOST_S):
+        seconds.append(timed(lambda: way.solve(request)))
+        readings.append(memory.bytes_per_s(0.25))
+    cold_s, read_bytes_per_s = statistics.median(seconds), statistics.median(readings)
+    row: dict[str, object] = {
+        **way.report.as_dict(), "backend": way.name, "phonemes": request.n_slots, "nodes": len(way.costs.terms.nodes),
+        "cold_s": cold_s, "repeats": len(seconds), "read_gb_per_s": read_bytes_per_s / 1e9,
+        "optimal": path.is_optimal, "gap": path.gap, "cost": path.cost,
+    }  # fmt: skip
+    if way.bytes_of is not None:
+        row["bytes_moved"] = way.bytes_of(request.n_slots)
+        row["fraction_of_bandwidth"] = row["bytes_moved"] / cold_s / read_bytes_per_s
+    if way.has_session:
+        row.update(_edits(way, request, repeats), tables_on=describe(way.kernels))
+    return {**row, "peak_mb": peak_mb()}
+
+
+def _edits(way: _Way, request: SearchRequest, repeats: int) -> dict[str, float | int]:
+    """Times of edits and of the tables behind them, medians.
+
+    pin_s : to the answer after one pin; refresh_s : until tables and prices are whole again
+    second_pin_s : to the answer after one more pin elsewhere, before the tables are whole again
+    paint_s : to the answer after another emotion over eight slots; prices_s : all prices, from nothing
+    """
+    session = SearchSession(request, way.costs, way.kernels)
+    nodes = way.costs.terms.nodes
+    prices_s = timed(session.refresh)
+    rng = np.random.default_rng(request.n_slots)
+
+    def node_for(slot: int) -> int:
+        same = np.flatnonzero(nodes.phoneme == request.phonemes[slot])
+        return int(rng.choice(same)) if len(same) else int(rng.integers(len(nodes)))
+
+    def back() -> None:
+        session.update(request)
+        session.refresh()
+
+    names = ("pin_s", "refresh_s", "second_pin_s", "paint_s")
+    seconds: dict[str, list[float]] = {name: [] for name in names}
+    began, done = time.perf_counter(), 0
+    while done < repeats and (not done or time.perf_counter() - began < _MOST_S):
+        slot, other = (int(p) for p in rng.integers(request.n_slots, size=2))
+        pinned = replace(request, pins={slot: node_for(slot)})
+        seconds["pin_s"].append(timed(lambda: session.update(pinned)))  # noqa: B023 - called at once
+        seconds["refresh_s"].append(timed(session.refresh))
+        back()
+        twice = replace(pinned, pins={other: node_for(other), **pinned.pins})
+        session.update(pinned)
+        seconds["second_pin_s"].append(timed(lambda: session.update(twice)))  # noqa: B023
+        back()
+        first = int(rng.integers(max(1, request.n_slots - _PAINTED_SLOTS)))
+        emotions = request.emotions.copy()
+        emotions[first : first + _PAINTED_SLOTS] = np.eye(len(EMOTIONS))[rng.integers(len(EMOTIONS))]
+        seconds["paint_s"].append(timed(lambda: session.update(replace(request, emotions=emotions))))  # noqa: B023
+        back()
+        done += 1
+    medians = {name: statistics.median(seconds[name]) for name in names}
+    return {**medians, "prices_s": prices_s, "edit_repeats": done}
+
+
+class _PlainKernels:
     """The plain way to write the step: ``np.add`` into a reused buffer, then a row-wise argmin."""
 
     def __init__(self, matrix: np.ndarray, dtype: type) -> None:
+        self.report = replace(NumpyKernels.report, api=f"{NumpyKernels.report.api}, {np.dtype(dtype).name}")
         self._matrix = matrix.astype(dtype)
         self._sums = np.empty_like(self._matrix)
+
+    @property
+    def matrix_bytes(self) -> int:
+        return self._matrix.nbytes
 
     def min_plus(self, front: np.ndarray) -> np.ndarray:
         np.add(self._matrix, front.astype(self._matrix.dtype), out=self._sums)
         best = self._sums.argmin(axis=1)
         return self._sums[np.arange(len(best)), best].astype(float)
+
+    def release(self) -> None:
+        self._matrix = self._sums = np.zeros((0, 0))
 
 
 def _compare(rows: list[dict[str, object]]) -> None:
@@ -218,39 +242,13 @@ def _compare(rows: list[dict[str, object]]) -> None:
 
 def as_table(answer: dict) -> str:
     """Lay the rows out for a terminal."""
-    columns = ("phonemes", "backend", "cold_s", "middle_s", "pin_s", "refresh_s", "paint_s", "prices_s",
-               "fraction_of_bandwidth", "speedup_vs_reference", "gap", "peak_mb")  # fmt: skip
+    columns = ("phonemes", "backend", "cold_s", "pin_s", "second_pin_s", "refresh_s", "paint_s", "prices_s",
+               "fraction_of_bandwidth", "speedup_vs_reference", "gap", "peak_mb", "repeats")  # fmt: skip
     lines = [f"{answer['machine']}", "  ".join(f"{name[:12]:>12}" for name in columns)]
     for row in answer["rows"]:
-        if "missing" in row:
+        if row["missing"]:
             lines.append(f"{row['backend']}: {row['missing']}")
             continue
-        cells = [row.get(name, "") for name in columns]
+        cells = ["" if row[name] is None else row[name] for name in columns]
         lines.append("  ".join(f"{f'{c:.4f}' if isinstance(c, float) else c:>12}" for c in cells))
     return "\n".join(lines)
-
-
-def _timed(work: Callable[[], object]) -> float:
-    began = time.perf_counter()
-    work()
-    return time.perf_counter() - began
-
-
-def _processor() -> str:
-    try:
-        for line in Path("/proc/cpuinfo").read_text().splitlines():
-            if line.startswith("model name"):
-                return line.partition(":")[2].strip()
-    except OSError:
-        pass
-    return platform.processor() or platform.machine()
-
-
-def _peak_mb() -> float:
-    """Largest resident size of this process so far, MiB; 0 where the system does not tell."""
-    try:
-        import resource
-    except ImportError:
-        return 0.0
-    unit = 1 << 20 if sys.platform == "darwin" else 1 << 10
-    return round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / (1 << 20), 1)
