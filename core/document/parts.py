@@ -77,3 +77,20 @@ class DatabaseReference:
         is_kept = database.path is not None and Path(database.path).parent.absolute() != cache_dir().absolute()
         path = str(Path(database.path).absolute()) if is_kept else None
         return cls(database.name, database.content_hash, path)
+
+
+@dataclass(frozen=True)
+class SoundReference:
+    """The sound of a project, by the SHA-256 of what is kept of it; ``path`` is where it once came from."""
+
+    digest: str
+    path: str | None = None
+
+
+@dataclass(frozen=True)
+class View:
+    """What was looked at; see `core.document.view_state.ViewState`."""
+
+    slot: int | None = None
+    playhead_s: float = 0.0
+    map_phone: str | None = None

@@ -1,0 +1,114 @@
+"""Edits at random, and a process that makes them into a project file until it is killed."""
+
+from __future__ import annotations
+
+import random
+import sys
+from dataclasses import replace
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+
+from core.document.change import Change
+from core.document.content import ProjectContent
+from core.document.document import Document, Edit
+from core.document.edits import (
+    FieldEdit,
+    PinMotionNode,
+    RemoveMotionNodes,
+    RestoreMotionNodes,
+    SetEmotion,
+    SetFace,
+    SetOutput,
+    SetReferenceVideo,
+    SetSpeech,
+)
+from core.document.parts import FaceChoice, ReferenceVideo, Speech
+from core.document.project_file import ProjectFile
+from core.document.transcript_edits import MergePhonemes, MovePhonemeBoundary, RenamePhoneme, SplitPhoneme
+from core.errors import UserFacingError
+from core.media.audio import Audio
+from core.motion.curation import Removal
+from core.speech.emotion import EMOTIONS
+from core.speech.emotion_painting import erased, painted
+from core.speech.phoneme import PHONEMES
+from core.speech.transcript import PhonemeUtterance, Transcript, WordUtterance
+
+RATE_HZ = 8000
+
+
+def made_speech(seed: int, n_phones: int = 9) -> Speech:
+    """Return noise with phones of 0.1 s, reproducibly."""
+    rng = np.random.default_rng(seed)
+    phones = [str(p) for p in rng.choice(PHONEMES, n_phones)]
+    utterances = [PhonemeUtterance(phone, 0.1 * i, 0.1 * (i + 1)) for i, phone in enumerate(phones)]
+    duration_s = round(0.1 * n_phones, 6)
+    transcript = Transcript.covering(utterances, [WordUtterance("word", 0.1, 0.4)], duration_s)
+    samples = (rng.integers(-9000, 9000, round(duration_s * RATE_HZ)) / 32768).astype(np.float32)
+    return Speech(Audio(samples, RATE_HZ, Path(f"speech-{seed}.wav")), transcript, f"text {seed} ✓")
+
+
+def random_edit(document: Document, chance: random.Random) -> Edit | None:
+    """Return an edit of ``document``; None where the one that was drawn cannot be."""
+    n_slots = 0 if document.speech is None else len(document.speech.transcript.phonemes)
+    slot, node = chance.randrange(max(n_slots, 1)), f"s{chance.randrange(8)}:{chance.randrange(12)}"
+    times_s = sorted(chance.uniform(0.0, 1.0) for _ in range(2))
+    nodes = [f"s{chance.randrange(8)}:{chance.randrange(12)}" for _ in range(chance.randrange(1, 4))]
+    only_here = chance.random() < 0.5
+    makers = [
+        lambda: PinMotionNode.on(document, slot, chance.choice((node, node, None))),
+        lambda: SetEmotion.on(
+            document,
+            painted(document.modifiers, *times_s, chance.choice(EMOTIONS), round(chance.random(), 2)),
+            "Paint",
+            chance.choice((None, 1)),
+        ),
+        lambda: SetEmotion.on(document, erased(document.modifiers, *times_s), "Erase"),
+        lambda: MovePhonemeBoundary.on(document, slot, chance.uniform(0.0, 1.0), chance.choice((None, 2))),
+        lambda: RenamePhoneme.on(document, slot, chance.choice(PHONEMES)),
+        lambda: SplitPhoneme.on(document, slot),
+        lambda: MergePhonemes.on(document, slot),
+        lambda: RemoveMotionNodes.on(document, nodes, Removal("me", "2026-01-01T00:00:00+00:00", "spike"), only_here),
+        lambda: RestoreMotionNodes.on(document, nodes, only_here),
+        lambda: SetFace.on(document, chance.choice((None, FaceChoice("ben"), FaceChoice("a.obj", "a.csv")))),
+        lambda: SetReferenceVideo.on(document, ReferenceVideo("actor.mp4", chance.uniform(-1, 1)), 3),
+        lambda: SetOutput.on(document, replace(document.output, start_frame=chance.randrange(100))),
+        lambda: FieldEdit.setting(
+            document, "Lock", Change.CONSTRAINTS, locks=MappingProxyType({**document.locks, slot: node})
+        ),
+    ]
+    if n_slots == 0 or chance.random() < 0.03:
+        return SetSpeech.on(document, made_speech(chance.randrange(4)))
+    try:
+        return chance.choice(makers)()
+    except UserFacingError:
+        return None
+
+
+def edit_until_killed(path: Path, seed: int) -> None:
+    """Edit the project at ``path`` for ever; tell each state's number before it is written, and after."""
+    chance, document, project = random.Random(seed), Document(), ProjectFile.open(path)
+    undone: list[Edit] = []
+    number = 0
+    while True:
+        edit = random_edit(document, chance)
+        if edit is None:
+            continue
+        if chance.random() < 0.2 and undone:
+            document.revert(undone.pop())
+        else:
+            document.apply(edit)
+            undone.append(edit)
+            del undone[:-50]
+        content = ProjectContent.of(document, others={"number": number + 1})
+        if document.speech is None:
+            continue
+        number += 1
+        print("begin", number, content.to_json(), flush=True)
+        project.save(content, document.speech.audio)
+        print("done", number, flush=True)
+
+
+if __name__ == "__main__":
+    edit_until_killed(Path(sys.argv[1]), int(sys.argv[2]))
