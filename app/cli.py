@@ -212,6 +212,23 @@ def bench_search(
         print(bench.as_table(answer))
 
 
+@bench.command("align")
+def bench_align(
+    corpus: Annotated[Path | None, typer.Argument(help="Folder laid out like GRID; the demo's when absent.")] = None,
+    part: Annotated[str, typer.Option(help="train, tune or test.")] = "test",
+    json: Json = False,
+) -> None:
+    """Measure forced alignment against a corpus's own times."""
+    from app import alignment_bench
+
+    with progress_bar("bench") as progress:
+        answer = alignment_bench.bench_alignment(corpus, part, progress)
+    if json:
+        print_json(answer)
+    else:
+        print(alignment_bench.as_table(answer))
+
+
 @bench.command("suspicion")
 def bench_suspicion(db: Database = None, json: Json = False) -> None:
     """Measure how well suspicion finds the demo corpus's planted faults, beside chance and plain distance."""

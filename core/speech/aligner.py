@@ -22,6 +22,7 @@ from core.speech.sphinx import (
     SphinxSound,
 )
 from core.speech.spoken_words import spoken_words
+from core.speech.stop_closure import with_short_closures
 from core.speech.transcript import PhonemeUtterance, Transcript, WordUtterance
 
 Lexicon = Mapping[str, Sequence[tuple[str, ...]]]
@@ -137,7 +138,7 @@ def _with_phones(
         if len(timed) < len(piece):
             timed = [replace(word, phones=_spread(word, said[word.index])) for word in piece]
         result += timed
-    return result
+    return with_short_closures(result)
 
 
 def _pieces(placed: Sequence[HeardWord], duration_s: float) -> Iterator[tuple[float, float, Sequence[HeardWord]]]:
