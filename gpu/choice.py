@@ -17,8 +17,8 @@ from core.search.compute import NumpyKernels
 from gpu.trial import measured, tried
 
 _VERSION = 1
-_DRIVER_SETTINGS = ("EGL_PLATFORM", "LIBGL_ALWAYS_SOFTWARE", "MESA_LOADER_DRIVER_OVERRIDE", "OCL_ICD_VENDORS",
-                    "POCL_DEVICES", "CUDA_VISIBLE_DEVICES")  # fmt: skip
+_DRIVER_SETTINGS = ("LIBGL_ALWAYS_SOFTWARE", "MESA_LOADER_DRIVER_OVERRIDE", "OCL_ICD_VENDORS", "POCL_DEVICES",
+                    "CUDA_VISIBLE_DEVICES")  # fmt: skip
 _EGL_VENDORS = Path("usr/share/glvnd/egl_vendor.d")  # a driver's package renews its file here
 log = logging.getLogger("gpu")
 

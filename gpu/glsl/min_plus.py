@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 import threading
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -53,32 +55,25 @@ class GlslKernels:
 
     def prepare(self, transition: np.ndarray) -> None:
         """See `SearchKernels.prepare`; raises `DeviceFailed` when the device has not enough memory."""
-        import moderngl
-
         self.release()
         n_nodes = self._n_nodes = len(transition)
         rows = max(1, self._most_bytes // (4 * n_nodes))
-        with self._lock, self._ctx:
-            try:
-                for first in range(0, n_nodes, rows):
-                    piece = np.ascontiguousarray(transition[first : first + rows])
-                    self._pieces.append((first, len(piece), self._ctx.buffer(piece)))
-                for name in ("PrevCostBufferMap", "CostValueMap", "LeavingValueMap"):
-                    self._maps[name] = self._ctx.buffer(reserve=n_nodes * 8)
-                self._check("has no room for the transition matrix")
-            except moderngl.Error as error:
-                raise DeviceFailed(
-                    f"The OpenGL device has no room for the transition matrix of {4 * n_nodes**2 >> 20} MiB."
-                ) from error
+        trouble = f"has no room for the transition matrix of {4 * n_nodes**2 >> 20} MiB"
+        with self._lock, self._ctx, self._failing(trouble):
+            for first in range(0, n_nodes, rows):
+                piece = np.ascontiguousarray(transition[first : first + rows])
+                self._pieces.append((first, len(piece), self._ctx.buffer(piece)))
+            for name in ("PrevCostBufferMap", "CostValueMap", "LeavingValueMap"):
+                self._maps[name] = self._ctx.buffer(reserve=n_nodes * 8)
 
     def min_plus(self, front: np.ndarray) -> np.ndarray:
         """See `SearchKernels.min_plus`."""
-        with self._lock, self._ctx:
+        with self._lock, self._ctx, self._failing("failed"):
             return self._arrived(front)
 
     def min_plus_both(self, front: np.ndarray, behind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """See `SearchKernels.min_plus_both`; two passes, as doubles have no atomic minimum."""
-        with self._lock, self._ctx:
+        with self._lock, self._ctx, self._failing("failed"):
             return self._arrived(front), self._left(behind)
 
     def _arrived(self, front: np.ndarray) -> np.ndarray:
@@ -107,12 +102,17 @@ class GlslKernels:
 
     def _read(self, name: str) -> np.ndarray:
         self._ctx.memory_barrier()
-        values = np.frombuffer(self._maps[name].read(), float).copy()
-        self._check("failed")
-        return values
+        return np.frombuffer(self._maps[name].read(), float).copy()
 
-    def _check(self, trouble: str) -> None:
-        # OpenGL does not stop at an error, as when a context is lost; it has to be asked
+    @contextlib.contextmanager
+    def _failing(self, trouble: str) -> Iterator[None]:
+        import moderngl
+
+        try:
+            yield
+        except moderngl.Error as error:
+            raise DeviceFailed(f"The OpenGL device {self.report.device} {trouble} ({error}).") from error
+        # OpenGL does not stop at an error, as when its context is lost; it has to be asked
         error = self._ctx.error
         if error != "GL_NO_ERROR":
             raise DeviceFailed(f"The OpenGL device {self.report.device} {trouble} ({error}).")

@@ -8,8 +8,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from core.search.compute import DeviceFailed
 from gpu.glsl.min_plus import GlslKernels
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -36,6 +38,21 @@ def test_a_matrix_in_pieces_gives_the_same(glsl, steps_equal_the_reference, monk
 
 def test_random_utterances(glsl, utterances_equal_the_reference):
     utterances_equal_the_reference(glsl, 10)
+
+
+def test_random_edits(glsl, edits_equal_the_reference):
+    edits_equal_the_reference(glsl, 10)
+
+
+def test_an_error_of_opengl_is_a_failed_device():
+    kernels = GlslKernels()
+    kernels.prepare(np.ones((8, 8), np.float32))
+    with kernels._ctx:
+        kernels._maps["CostValueMap"].bind_to_storage_buffer(10_000)  # OpenGL notes an error and goes on
+    with pytest.raises(DeviceFailed, match="^The OpenGL device"):
+        kernels.min_plus(np.ones(8))
+    assert np.array_equal(kernels.min_plus(np.ones(8)), np.full(8, 2.0))
+    kernels.release()
 
 
 def test_the_driver_is_named(glsl):

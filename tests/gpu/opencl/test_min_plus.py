@@ -21,6 +21,10 @@ def test_fifty_random_utterances(opencl, utterances_equal_the_reference):
     utterances_equal_the_reference(opencl, 50)
 
 
+def test_random_edits(opencl, edits_equal_the_reference):
+    edits_equal_the_reference(opencl, 40)
+
+
 def test_the_driver_is_named(opencl):
     assert opencl.report.backend == "opencl"
     assert opencl.report.device and opencl.report.api
