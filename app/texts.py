@@ -106,6 +106,16 @@ VIDEO_EMPTY = "The video is composed after a synthesis."
 VIDEO_WAITING = "Composing the video…"
 VIDEO_CANCELLED = "Press Compose to make the video."
 VIDEO_FAILED = "The video cannot be shown: {why}"
+VIDEO_COMPOSED = "composed"
+VIDEO_COMPOSED_TIP = "The video as it would be exported"
+VIDEO_REFERENCE = "reference"
+VIDEO_REFERENCE_TIP = "A film of the actor beside the synthesis, at the same playhead"
+REFERENCE_EMPTY = "Open a film of the actor to compare with."
+OPEN_REFERENCE = "Open…"
+OPEN_REFERENCE_TIP = "Choose a film of the actor; it stays where it is"
+OFFSET = "offset "
+OFFSET_TIP = "The time of the film at which the speech starts"
+FILTER_REFERENCE = "Films (*.avi *.mp4 *.mov *.mkv *.webm *.mpg *.mpeg);;All files (*)"
 COMPOSE = "Compose"
 COMPOSE_TIP = "Compose the video of the motion on show"
 SAVE_AS = "Save as…"
@@ -114,15 +124,27 @@ ISOMAP_EMPTY = "Open a motion database to see its maps."
 PHONE_TIP = "Whose map to show; selecting an utterance in the timeline shows its own"
 PHONE_ITEM = "/{phone}/   {frames} frames"
 TRIPHONE = "/{phone}/   {before} · {phone} · {after}"
-MAP_TIP = "Point to preview, click to keep, double click or Enter to pin the node to the selected utterance"
+MAP_TIP = (
+    "Point to preview, click to select, double click or Enter to pin, U to unpin, Space to play, Shift+Space slowly, "
+    "Delete to remove, Shift+drag for a box, Ctrl+drag for a lasso"
+)
 LEGEND_USED = "in use"
 LEGEND_PICKED = "picked"
+LEGEND_TIME = "same time"
+LEGEND_CONTEXT = "same triphone"
+LEGEND_TIP = (
+    "<qt>◆ the node and frame in use; its way is drawn, brighter as time goes by<br>"
+    "○ time-correct: where each node is at the playhead's relative time<br>"
+    "◎ context-correct: captured between the same two phones<br>⌖ what you picked</qt>"
+)
 PINNED = "pinned to {node}"
 PREVIEW_REST = "at rest · point at the map to see a frame"
 PREVIEW_NODE = "{node} · {emotion} · {before}·{phone}·{after} · {milliseconds:.0f} ms"
 PREVIEW_USED = "in use · "
 PREVIEW_OUTSIDE = "nearest frame (outside the map) · "
 PREVIEW_BLEND = ""
+PREVIEW_PRICE = " · price +{price:.2f}"
+PREVIEW_NO_PRICE = " · cannot stand here"
 PIN = "Pin"
 UNPIN = "Unpin"
 PIN_TIP = "Tie this node to the selected utterance (Enter on the map, or double click)"
@@ -134,7 +156,6 @@ BACK_TIP = "One frame back (Left)"
 FORWARD_TIP = "One frame on (Right)"
 TO_START_TIP = "To the start (Home)"
 TO_END_TIP = "To the end (End)"
-VIDEO_PLAY_TIP = "Play or pause the video, with its sound"
 TIME_TIP = "Minutes, seconds and milliseconds; frame of frames at {fps} frames a second"
 
 # Timeline
@@ -247,3 +268,87 @@ THEME_NEXT_START = "The new theme dresses the window from the next start."
 SHOWING = "drawing the window"
 OPEN_MARKERS = "Where the markers sit on {face} (a CSV of marker,vertex)"
 FILTER_MARKERS = "Marker files (*.csv);;All files (*)"
+
+# The map's tools
+MAP_MOVE, MAP_BOX, MAP_LASSO = "move", "box", "lasso"
+MAP_MOVE_TIP = "A drag moves the map; Shift+drag draws a box, Ctrl+drag a lasso"
+MAP_BOX_TIP = "A drag selects the nodes in a box (Shift+drag at any time)"
+MAP_LASSO_TIP = "A drag selects the nodes within an outline (Ctrl+drag at any time)"
+COLOUR_BY = {
+    "emotion": "emotion", "time": "relative time", "sentence": "sentence", "suspicion": "suspicion", "price": "price",
+}  # fmt: skip
+COLOUR_TIP = "What the colours of the dots tell"
+COLOUR_TIPS = {
+    "emotion": "The emotion in which a frame was captured",
+    "time": "Where a frame is between the start and the end of its motion node",
+    "sentence": "Which sentence a frame comes from",
+    "suspicion": "How much speaks for a fault of the capture",
+    "price": "What it would add to the cost to force the node into the selected utterance, in penalty units (PNT)",
+}
+SCALE_START, SCALE_END = "start", "end"
+SCALE_SOUND, SCALE_SUSPECT = "sound", "suspect"
+SCALE_PRICE, SCALE_FREE = "+{price:.2f} and more", "free"
+PRICE_WAITS = "Prices come with a synthesis; select a /{phone}/ in the timeline."
+SIGMA, RHO = "σ", "ρ"
+SIGMA_TIP = "σ of the splats (equation 3): how far each frame shines, {sigma:.0f} pixels"
+RHO_TIP = "ρ of the splats (equation 3): how brightly each frame shines; {rho:.4f} on this map"
+FILTER_TIP = "Show frames captured in {emotion}"
+PCA_MAP = "PCA"
+PCA_TIP = "Show the linear map (PCA) beside the Isomap, and how well each keeps neighbours"
+PRESERVATION = "neighbours kept: Isomap {isomap:.0%}, PCA {pca:.0%}"
+PRESERVATION_TIP = (
+    "<qt>Of the 12 nearest captured frames, how many are among the 12 nearest on the map: Isomap {isomap.shared:.1%}, "
+    "PCA {pca.shared:.1%}.<br>Trustworthiness: {isomap.trustworthiness:.3f}, {pca.trustworthiness:.3f}.<br>"
+    "Continuity: {isomap.continuity:.3f}, {pca.continuity:.3f}.</qt>"
+)
+COMPARING_MAPS = "Comparing the maps"
+EMOTION_COLOURS = {"paper": "The paper's colours", "okabe-ito": "Okabe–Ito, safe for colour-blind eyes"}
+EMOTION_COLOURS_TIP = "Colours of the emotions"
+
+# Selecting and playing nodes
+SELECTED_NODES = "{count} nodes selected"
+CLIP_SOUND = "Opening the node's sound"
+
+# Removing
+REMOVE = "Remove"
+REMOVE_ASK = "Remove {what} because"
+REMOVE_ONE = "node {node}"
+REMOVE_MANY = "{count} nodes"
+REMOVE_REASONS = ("contaminated", "wrong label", "bad acting", "duplicate")
+REMOVE_REASON_HINT = "reason"
+REMOVE_TIP = "Let no search use them (Enter); the Removed list brings them back"
+CANCEL = "Cancel"
+REMOVE_NOTHING = "Select what to remove first: click a dot, or draw a box (Shift+drag) or a lasso (Ctrl+drag)."
+REMOVED = "Removed"
+REMOVED_TIP = "Motion nodes that no search uses; double click or Enter restores one"
+REMOVED_EMPTY = "No node is removed. Delete removes what is selected on the map."
+REMOVED_ROW = "{node}   /{phone}/   {why}"
+REMOVED_ROW_TIP = "removed by {who}, {at}"
+RESTORE = "Restore"
+COST_MOVED = "{what}: cost {before:.2f} → {after:.2f}"
+COST_STAYED = "{what}: cost stays {after:.2f}"
+
+# Suspicion
+SUSPECTS = "Suspects"
+SUSPECTS_TIP = "Motion nodes that look contaminated, worst first; N steps to the next and plays it"
+LOOKING_FOR_FAULTS = "Looking for capture faults"
+SUSPECTS_WAIT = "Looking for capture faults…"
+SUSPECTS_EMPTY = "Nothing looks contaminated."
+SUSPECTS_COUNT = "{count} worth watching · N next · Space plays · Delete removes"
+SUSPECT_ROW = "{node}   /{phone}/   {fault}"
+SUSPECT_TIPS = {
+    "spike": "{marker} leaves by {size_mm:.1f} mm and is back within a moment",
+    "swap": "{marker} stands {size_mm:.1f} mm off, then is back; two markers may have changed names",
+    "drift": "{marker} creeps away and snaps back by {size_mm:.1f} mm",
+    "freeze": "{marker} stands still, then jumps by {size_mm:.1f} mm",
+    "far": "far from all other nodes of its phoneme",
+    "never wins": "no place of the corpus would choose it",
+}
+SUSPECT_SCORE = "{score:.0f} robust deviations above what is usual in this corpus"
+ACTION_REMOVE = "&Remove the selected nodes…"
+ACTION_RESTORE = "R&estore the selected nodes"
+ACTION_NEXT_SUSPECT = "&Next suspect"
+ACTION_PLAY_NODE = "Play the &node"
+ACTION_SUSPECTS = "&Suspects"
+ACTION_REMOVED = "Rem&oved nodes"
+ACTION_PCA = "P&CA beside the Isomap"

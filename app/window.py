@@ -25,6 +25,8 @@ from app.panels.video import VideoPane
 from app.settings import last_folder, remember_folder, window_settings
 from core.document.change import Change
 from core.document.document import FaceChoice
+from core.document.edits import SetReferenceVideo
+from core.document.parts import ReferenceVideo
 from core.speech.emotion import EMOTIONS
 
 DEMO_START = "demo-neutral"
@@ -181,6 +183,7 @@ class MainWindow(QMainWindow):
         control.face_asked.connect(self.ask_face)
         control.database_asked.connect(self.ask_database)
         self.video.save_button.clicked.connect(self.ask_save_film)
+        self.video.reference_asked.connect(self.ask_reference)
         authoring.document.changed.connect(self.on_document_changed)
         self._enable_save()
 
@@ -226,6 +229,13 @@ class MainWindow(QMainWindow):
         path = self._ask_file("database", texts.OPEN_DATABASE, texts.FILTER_DATABASE)
         if path is not None:
             self.authoring.open_database(path)
+
+    def ask_reference(self) -> None:
+        """Choose a film of the actor."""
+        path = self._ask_file("reference", texts.VIDEO_REFERENCE, texts.FILTER_REFERENCE)
+        if path is not None:
+            document = self.authoring.document
+            self.authoring.push(SetReferenceVideo.on(document, ReferenceVideo(str(path))))
 
     def ask_save_film(self) -> None:
         """Choose where a copy of the film goes."""

@@ -46,20 +46,18 @@ class Transport(QWidget):
     end_asked = Signal(bool)
     seek_asked = Signal(float)
 
-    def __init__(self, play_tip: str, with_steps: bool = True) -> None:
+    def __init__(self, play_tip: str) -> None:
         super().__init__()
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(0)
         self._duration_s = 0.0
         self.play_button = self._button("play", play_tip, self.play_asked.emit)
-        if with_steps:
-            row.addWidget(self._button("to_start", texts.TO_START_TIP, lambda: self.end_asked.emit(False)))
-            row.addWidget(self._button("step_back", texts.BACK_TIP, lambda: self.step_asked.emit(-1)))
+        row.addWidget(self._button("to_start", texts.TO_START_TIP, lambda: self.end_asked.emit(False)))
+        row.addWidget(self._button("step_back", texts.BACK_TIP, lambda: self.step_asked.emit(-1)))
         row.addWidget(self.play_button)
-        if with_steps:
-            row.addWidget(self._button("step_forward", texts.FORWARD_TIP, lambda: self.step_asked.emit(1)))
-            row.addWidget(self._button("to_end", texts.TO_END_TIP, lambda: self.end_asked.emit(True)))
+        row.addWidget(self._button("step_forward", texts.FORWARD_TIP, lambda: self.step_asked.emit(1)))
+        row.addWidget(self._button("to_end", texts.TO_END_TIP, lambda: self.end_asked.emit(True)))
         row.addSpacing(STEP)
         self.slider = TimeSlider()
         self.slider.setMinimumWidth(40)

@@ -1,47 +1,53 @@
-"""Video playback: the composed film, with its sound."""
+"""Video playback: the composed film, or the film of the actor, at the one playhead."""
 
 from __future__ import annotations
 
-from PySide6.QtCore import QRectF, Qt, QTimer, QUrl
-from PySide6.QtGui import QPainter
-from PySide6.QtWidgets import QPushButton, QWidget
+from pathlib import Path
+
+from PySide6.QtCore import QRectF, Qt, Signal
+from PySide6.QtGui import QImage, QPainter
+from PySide6.QtWidgets import QDoubleSpinBox, QPushButton, QWidget
 
 from app import texts
 from app.authoring import Authoring
-from app.panels.pane import Pane
+from app.panels.pane import Choice, Pane
 from app.panels.transport import Transport
 from app.theme import colour
+from app.video_frames import VideoFrames
+from core.document.change import Change
+from core.document.edits import SetReferenceVideo
+from core.document.parts import ReferenceVideo
 
-_FOLLOW_MS = 60
+COMPOSED, REFERENCE = "composed", "reference"
+_LONGEST_OFFSET_S = 36_000.0
 # what films are drawn on, in any theme
 FILM_GROUND = "#121316"
 
 
 class VideoView(QWidget):
-    """Paints the frames that come, as large as they fit. (A native video widget cannot be grabbed or overlaid.)"""
+    """Paints the pictures that come, as large as they fit. (A native video widget cannot be grabbed or overlaid.)"""
 
     def __init__(self) -> None:
         super().__init__()
-        self._image = None
+        self._image: QImage | None = None
 
     @property
     def has_frame(self) -> bool:
-        """Whether a frame came."""
+        """Whether a picture came."""
         return self._image is not None
 
-    def show_frame(self, frame) -> None:
-        """Show a QVideoFrame."""
-        if frame.isValid():
-            self._image = frame.toImage()
-            self.update()
+    def show_frame(self, image: QImage) -> None:
+        """Show a picture."""
+        self._image = image
+        self.update()
 
     def clear(self) -> None:
-        """Forget the last frame."""
+        """Forget the last picture."""
         self._image = None
         self.update()
 
     def paintEvent(self, _event) -> None:
-        """Paint the frame."""
+        """Paint the picture."""
         painter = QPainter(self)
         painter.fillRect(self.rect(), colour(FILM_GROUND))
         if self._image is None:
@@ -53,79 +59,106 @@ class VideoView(QWidget):
 
 
 class VideoPane(Pane):
-    """Top right: what an export would look like, played by the platform's own player."""
+    """Top right: what an export would look like, or how the actor said it; the motion pane's playhead drives it.
+
+    reference_asked() : choose a film of the actor
+    """
+
+    reference_asked = Signal()
 
     def __init__(self, authoring: Authoring) -> None:
         self.video_view = VideoView()
         super().__init__(texts.VIDEO, self.video_view, texts.VIDEO_EMPTY)
         self._authoring = authoring
-        self._player = None
-        self.compose_button = QPushButton(texts.COMPOSE, toolTip=texts.COMPOSE_TIP)
-        self.save_button = QPushButton(texts.SAVE_AS, toolTip=texts.SAVE_AS_TIP)
-        for button, asked in ((self.compose_button, authoring.film.compose), (self.save_button, None)):
-            button.setProperty("role", "quiet")
-            button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-            if asked is not None:
-                button.clicked.connect(asked)
-            self.header.addWidget(button)
-        self.transport = Transport(texts.VIDEO_PLAY_TIP, with_steps=False)
-        self.transport.play_asked.connect(self.on_play_asked)
-        self.transport.seek_asked.connect(self.seek)
+        self._failure = ""
+        self._frames = VideoFrames(authoring.jobs, "video", self)
+        self._frames.arrived.connect(self.video_view.show_frame)
+        self._frames.failed.connect(self.on_failed)
+        self.source = Choice([(COMPOSED, texts.VIDEO_COMPOSED, texts.VIDEO_COMPOSED_TIP),
+                              (REFERENCE, texts.VIDEO_REFERENCE, texts.VIDEO_REFERENCE_TIP)])  # fmt: skip
+        self.source.choose(COMPOSED)
+        self.compose_button = self._button(texts.COMPOSE, texts.COMPOSE_TIP)
+        self.save_button = self._button(texts.SAVE_AS, texts.SAVE_AS_TIP)
+        self.open_button = self._button(texts.OPEN_REFERENCE, texts.OPEN_REFERENCE_TIP)
+        for widget in (self.source, self.compose_button, self.save_button, self.open_button):
+            self.header.addWidget(widget)
+        self.transport = Transport(texts.PLAY_TIP)
+        self.transport.play_asked.connect(authoring.play_or_pause)
+        self.transport.step_asked.connect(authoring.step_frame)
+        self.transport.end_asked.connect(lambda is_end: authoring.seek(authoring.player.duration_s if is_end else 0.0))
+        self.transport.seek_asked.connect(authoring.seek)
         self.footer.addWidget(self.transport, 1)
-        authoring.film.changed.connect(self.on_film_changed)
+        self.offset = QDoubleSpinBox(decimals=3, singleStep=0.04, suffix=" s", toolTip=texts.OFFSET_TIP)
+        self.offset.setRange(-_LONGEST_OFFSET_S, _LONGEST_OFFSET_S)
+        self.offset.setPrefix(texts.OFFSET)
+        self.offset.setKeyboardTracking(False)
+        self.footer.addWidget(self.offset)
+        self.source.group.idClicked.connect(lambda _: self._show_source())
+        self.compose_button.clicked.connect(authoring.film.compose)
+        self.open_button.clicked.connect(self.reference_asked)
+        self.offset.valueChanged.connect(self.on_offset)
+        authoring.film.changed.connect(self._show_source)
         authoring.film.failed.connect(self.on_failed)
         authoring.jobs.started.connect(self._say_what_is_next)
         authoring.jobs.ended.connect(self._say_what_is_next)
-        authoring.player.playing_changed.connect(self.on_motion_playing)
-        authoring.view.playhead_moved.connect(lambda _: self._follow_soon.start())
-        self._failure = ""
-        self._follow_soon = QTimer(self, singleShot=True, interval=_FOLLOW_MS)
-        self._follow_soon.timeout.connect(self._follow)
-        self.on_film_changed()
+        authoring.player.playing_changed.connect(self.transport.show_playing)
+        authoring.view.playhead_moved.connect(self.on_playhead_moved)
+        authoring.document.changed.connect(self.on_document_changed)
+        self._show_source()
 
-    def on_film_changed(self) -> None:
-        """Show another film, from its start or from where the playhead stands."""
-        film = self._authoring.film.path
-        self._failure = ""
-        self.save_button.setEnabled(film is not None)
-        if film is None:
-            if self._player is not None:
-                self._player.stop()
-                self._player.setSource(QUrl())
-            self.video_view.clear()
-            self.transport.set_duration(0.0)
-            self._show_time(0)
-        else:
-            player = self._opened_player()
-            player.setSource(QUrl.fromLocalFile(str(film)))
-            player.pause()
-        self._say_what_is_next()
+    def _button(self, text: str, tip: str) -> QPushButton:
+        button = QPushButton(text, toolTip=tip)
+        button.setProperty("role", "quiet")
+        button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        return button
 
-    def on_play_asked(self) -> None:
-        """Play or pause; two voices at once help nobody, so the other pane pauses."""
-        if self._player is None:
-            return
-        if self._player.isPlaying():
-            self._player.pause()
-        else:
-            self._authoring.player.pause()
-            self._player.play()
+    @property
+    def shows_reference(self) -> bool:
+        """Whether it is the film of the actor that is looked at."""
+        return self.source.key == REFERENCE
 
-    def on_motion_playing(self, playing: bool) -> None:
-        """The motion pane plays: pause."""
-        if playing and self._player is not None:
-            self._player.pause()
+    @property
+    def path(self) -> Path | None:
+        """The film on show."""
+        if not self.shows_reference:
+            return self._authoring.film.path
+        reference = self._authoring.document.reference_video
+        return None if reference is None else Path(reference.path)
 
-    def seek(self, time_s: float) -> None:
-        """Go to a time."""
-        if self._player is not None:
-            self._player.setPosition(round(1000 * time_s))
+    # Reactions
 
-    def _follow(self) -> None:
-        """Show the film where the playhead came to rest, unless something plays."""
-        playing = self._authoring.player.is_playing or (self._player is not None and self._player.isPlaying())
-        if not playing and self._authoring.film.path is not None:
-            self.seek(self._authoring.view.playhead_s)
+    def on_document_changed(self, change: Change, origin: object) -> None:
+        """Follow the length of the speech and the choice of a film."""
+        document = self._authoring.document
+        if change & Change.ALIGNMENT:
+            self.transport.set_duration(0.0 if document.speech is None else document.speech.transcript.duration_s)
+            self.on_playhead_moved(self._authoring.view.playhead_s)
+        if change & Change.REFERENCE_VIDEO:
+            reference = document.reference_video
+            if origin is not self and reference is not None:
+                self.offset.blockSignals(True)
+                self.offset.setValue(reference.offset_s)
+                self.offset.blockSignals(False)
+            if origin is not self:
+                self.source.choose(REFERENCE if reference is not None else COMPOSED)
+                self._show_source()
+            self.on_playhead_moved(self._authoring.view.playhead_s)
+
+    def on_offset(self, offset_s: float) -> None:
+        """Lay the film of the actor earlier or later."""
+        reference = self._authoring.document.reference_video
+        if reference is not None:
+            moved = ReferenceVideo(reference.path, offset_s)
+            self._authoring.push(SetReferenceVideo.on(self._authoring.document, moved, id(self)), self)
+
+    def on_playhead_moved(self, time_s: float) -> None:
+        """Show the picture at the playhead."""
+        film = self._authoring.film
+        self.transport.show_time(time_s, film.fps, film.fps_name)
+        reference = self._authoring.document.reference_video
+        offset_s = reference.offset_s if self.shows_reference and reference is not None else 0.0
+        # a moment exactly between two pictures shows the later one, as the motion pane does
+        self._frames.ask(time_s + offset_s + 1e-4)
 
     def on_failed(self, why: str) -> None:
         """Say in the pane why there is no video."""
@@ -134,36 +167,19 @@ class VideoPane(Pane):
 
     def release(self) -> None:
         """Let go of the film, so that its file can be removed."""
-        if self._player is not None:
-            self._player.stop()
-            self._player.setSource(QUrl())
+        self._frames.set_video(None)
 
-    def _opened_player(self):
-        """Open the platform's player when there is first something to play; loading it takes a while."""
-        if self._player is None:
-            from PySide6.QtMultimedia import QAudioOutput, QMediaPlayer, QVideoSink
-
-            self._player = QMediaPlayer(self)
-            self._sink = QVideoSink(self)
-            self._sink.videoFrameChanged.connect(self.video_view.show_frame)
-            self._player.setVideoSink(self._sink)
-            self._player.setAudioOutput(QAudioOutput(self))
-            self._player.errorOccurred.connect(lambda _, text: self.on_failed(text))
-            self._player.durationChanged.connect(lambda ms: self.transport.set_duration(ms / 1000))
-            self._player.positionChanged.connect(self._show_time)
-            self._player.playingChanged.connect(self.transport.show_playing)
-            self._player.mediaStatusChanged.connect(self._on_status)
-        return self._player
-
-    def _on_status(self, status) -> None:
-        from PySide6.QtMultimedia import QMediaPlayer
-
-        if status == QMediaPlayer.MediaStatus.LoadedMedia:
-            self.seek(self._authoring.view.playhead_s)
-
-    def _show_time(self, position_ms: int) -> None:
-        film = self._authoring.film
-        self.transport.show_time(position_ms / 1000, film.fps, film.fps_name)
+    def _show_source(self) -> None:
+        self._failure = ""
+        self.video_view.clear()
+        self._frames.set_video(self.path)
+        for widget, shown in ((self.compose_button, False), (self.save_button, False), (self.open_button, True),
+                              (self.offset, True)):  # fmt: skip
+            widget.setVisible(shown == self.shows_reference)
+        self.save_button.setEnabled(self._authoring.film.path is not None)
+        self.offset.setEnabled(self._authoring.document.reference_video is not None)
+        self.on_playhead_moved(self._authoring.view.playhead_s)
+        self._say_what_is_next()
 
     def _say_what_is_next(self, *_: object) -> None:
         authoring = self._authoring
@@ -172,8 +188,10 @@ class VideoPane(Pane):
         self.compose_button.setEnabled(can_compose)
         if self._failure:
             self.show_empty(self._failure)
-        elif authoring.film.path is not None:
+        elif self.path is not None:
             self.show_content()
+        elif self.shows_reference:
+            self.show_empty(texts.REFERENCE_EMPTY)
         elif composing:
             self.show_empty(texts.VIDEO_WAITING)
         else:
