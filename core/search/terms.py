@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -82,12 +83,13 @@ class TransitionTerms:
         targets = targets[pre[targets] != NIL]
         lengths = np.maximum(self.nodes.n_frames[pre[targets]], 3)
         most_rows = max(1, most_bytes // (8 * len(n)))
+        poses = self._by_length(n)
         for length in np.unique(lengths):
             of_length = targets[lengths == length]
-            fading_out = self._curvature_of_warped(n, int(length), fading_out=True)
+            fading_out = self._curvature_of_warped(poses, int(length), fading_out=True)
             for first in range(0, len(of_length), most_rows):
                 m = of_length[first : first + most_rows]
-                fading_in = self._curvature_of_warped(pre[m], int(length), fading_out=False)
+                fading_in = self._curvature_of_warped(self._by_length(pre[m]), int(length), fading_out=False)
                 yield TransitionBlock(
                     m,
                     _squared_distances(self._first_pose[m], self._last_pose[n]),
@@ -101,14 +103,17 @@ class TransitionTerms:
         pre = self.nodes.pre[targets]
         block = np.full((len(targets), len(sources)), weights.alpha1 * weights.pnt, np.float32)
         length_of = np.where(pre == NIL, 0, np.maximum(self.nodes.n_frames[pre], 3))
-        leaving = [self._last_pose[sources] * np.sqrt(weights.alpha3), self._last_velocity[sources]]
+        root = np.sqrt(weights.alpha3)
+        leaving = np.concatenate([self._last_pose[sources] * root, self._last_velocity[sources]], axis=1)
+        poses = self._by_length(sources)
         for length in np.unique(length_of[pre != NIL]):
             where = np.flatnonzero(length_of == length)
             m = targets[where]
-            out = self._curvature_of_warped(sources, int(length), fading_out=True) * np.sqrt(weights.alpha2)
-            into = self._curvature_of_warped(pre[where], int(length), fading_out=False) * -np.sqrt(weights.alpha2)
-            arriving = [self._first_pose[m] * np.sqrt(weights.alpha3), self._first_velocity[m], into]
-            cost = _squared_distances(np.concatenate(arriving, axis=1), np.concatenate([*leaving, out], axis=1))
+            out = self._curvature_of_warped(poses, int(length), fading_out=True)
+            into = self._curvature_of_warped(self._by_length(pre[where]), int(length), fading_out=False)
+            cost = weights.alpha2 * _squared_distances(into, -out)
+            arriving = np.concatenate([self._first_pose[m] * root, self._first_velocity[m]], axis=1)
+            cost += _squared_distances(arriving, leaving)
             cost += weights.pnt * (self._viseme[pre[where]][:, None] != self._viseme[sources][None])
             block[where] = cost
         block[pre[:, None] == sources[None]] = 0.0
@@ -134,31 +139,45 @@ class TransitionTerms:
         return (float(block.position_gap[0, 0]), float(block.velocity_gap[0, 0]), float(block.smoothing[0, 0]),
                 bool(block.viseme_differs[0, 0]))  # fmt: skip
 
-    def _curvature_of_warped(self, rows: np.ndarray, length: int, fading_out: bool) -> np.ndarray:
+    def _curvature_of_warped(
+        self, poses: list[tuple[np.ndarray, np.ndarray]], length: int, fading_out: bool
+    ) -> np.ndarray:
         """Second derivative of nodes warped to ``length`` frames and faded, as one vector a node.
 
         DSC (equation 6) of nodes a and b is the squared length of the sum of a's vector, fading out, and b's, fading
         in, since the blend, the warp and the derivative are linear: so it is the squared distance of one to minus the
         other. t in seconds; the integral is a sum over frames.
 
+        poses : the nodes, as `_by_length` groups them
         returns : float64, shape (n_rows, (length - 2) * n_dims)
         """
-        second_difference = np.zeros((length - 2, length))
-        inner = np.arange(length - 2)
-        second_difference[inner, inner] = second_difference[inner, inner + 2] = 1.0
-        second_difference[inner, inner + 1] = -2.0
-        ramp = np.linspace(1.0, 0.0, length)
-        faded = second_difference * (ramp if fading_out else 1.0 - ramp) * self.rate_hz**1.5
         n_dims = self._frames.shape[1]
-        vectors = np.zeros((len(rows), (length - 2) * n_dims))
+        vectors = np.empty((sum(len(where) for where, _ in poses), length - 2, n_dims))
+        for where, captured in poses:
+            bent = (_bending(len(captured), length, fading_out) * self.rate_hz**1.5) @ captured
+            vectors[where] = bent.reshape(length - 2, len(where), n_dims).swapaxes(0, 1)
+        return vectors.reshape(len(vectors), -1)
+
+    def _by_length(self, rows: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Group nodes by their number of frames: places in ``rows``; float64, shape (n_frames, n_places * n_dims)."""
         own = self.nodes.n_frames[rows]
+        groups = []
         for n_own in np.unique(own):
             where = np.flatnonzero(own == n_own)
-            span = self.nodes.start[rows[where], None] + np.arange(n_own)
-            poses = np.asarray(self._frames[span], float)
-            bent = np.einsum("lf,nfd->nld", faded @ warp_matrix(int(n_own), length), poses, optimize=True)
-            vectors[where] = bent.reshape(len(where), -1)
-        return vectors
+            span = self.nodes.start[rows[where]] + np.arange(n_own)[:, None]
+            groups.append((where, np.asarray(self._frames[span], float).reshape(n_own, -1)))
+        return groups
+
+
+@lru_cache(maxsize=8192)
+def _bending(n_frames: int, length: int, fading_out: bool) -> np.ndarray:
+    """Warp, fade and second difference as one matrix; float64, shape (length - 2, n_frames)."""
+    second_difference = np.zeros((length - 2, length))
+    inner = np.arange(length - 2)
+    second_difference[inner, inner] = second_difference[inner, inner + 2] = 1.0
+    second_difference[inner, inner + 1] = -2.0
+    ramp = np.linspace(1.0, 0.0, length)
+    return second_difference * (ramp if fading_out else 1.0 - ramp) @ warp_matrix(n_frames, length)
 
 
 def warp_matrix(n_frames: int, length: int) -> np.ndarray:
@@ -174,8 +193,10 @@ def warp_matrix(n_frames: int, length: int) -> np.ndarray:
 
 
 def _squared_distances(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    squared = (a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1)[None] - 2.0 * a @ b.T
-    return squared.clip(0.0)
+    squared = a @ (-2.0 * b.T)
+    squared += np.einsum("ij,ij->i", a, a)[:, None]
+    squared += np.einsum("ij,ij->i", b, b)
+    return np.maximum(squared, 0.0, out=squared)
 
 
 def observation_costs(phonemes: np.ndarray, nodes: NodeTable, weights: SearchWeights) -> np.ndarray:
