@@ -13,6 +13,7 @@ from app.actions import Actions, ButtonKeys, frame_rate_options
 from app.authoring import Authoring
 from app.icons import icon
 from app.loading import SpeechRequest, face_beside_markers
+from app.panels.commands import CommandPalette
 from app.panels.control import WIDTH_PX, ControlPanel
 from app.panels.isomap import IsomapPane
 from app.panels.message_bar import MessageBar
@@ -25,7 +26,6 @@ from app.panels.video import VideoPane
 from app.settings import last_folder, remember_folder, window_settings
 from core.document.change import Change
 from core.document.document import FaceChoice
-from core.document.edits import SetReferenceVideo
 from core.document.parts import ReferenceVideo
 from core.speech.emotion import EMOTIONS
 
@@ -57,6 +57,7 @@ class MainWindow(QMainWindow):
         self._button_keys = ButtonKeys(self)
         QApplication.instance().installEventFilter(self._button_keys)
         self.actions = Actions(self)
+        self.commands = CommandPalette(self)
         self._make_menus()
         self._join()
         self._restore_layout()
@@ -132,6 +133,10 @@ class MainWindow(QMainWindow):
         add(motion, "synthesise", texts.SYNTHESISE, ["Ctrl+Return", "Ctrl+Enter"], self.control.synthesise)
         motion.addSeparator()
         add(motion, "play", texts.ACTION_PLAY, "Space", authoring.play_or_pause)
+        add(motion, "shuttle_back", texts.ACTION_SHUTTLE_BACK, "J", lambda: authoring.shuttle(-1))
+        add(motion, "shuttle_stop", texts.ACTION_SHUTTLE_STOP, "K", lambda: authoring.shuttle(0))
+        add(motion, "shuttle_on", texts.ACTION_SHUTTLE_ON, "L", lambda: authoring.shuttle(1))
+        add(motion, "loop", texts.ACTION_LOOP, "Ctrl+L", authoring.toggle_loop)
         add(motion, "back", texts.ACTION_BACK, "Left", lambda: authoring.step_frame(-1))
         add(motion, "forward", texts.ACTION_FORWARD, "Right", lambda: authoring.step_frame(1))
         add(motion, "to_start", texts.ACTION_TO_START, "Home", lambda: authoring.seek(0.0))
@@ -151,6 +156,12 @@ class MainWindow(QMainWindow):
         add(time, "zoom_all", texts.ACTION_ZOOM_ALL, "0", self.timeline.zoom_all)
 
         time.addSeparator()
+        add(time, "rename", texts.ACTION_RENAME, "F2", self.timeline.rename_selected)
+        add(time, "split", texts.ACTION_SPLIT, "Ctrl+Shift+K", self.timeline.split_at_playhead)
+        add(time, "merge", texts.ACTION_MERGE, "Ctrl+J", self.timeline.merge_selected)
+        add(time, "lock", texts.ACTION_LOCK, "Ctrl+Shift+L", authoring.lock)
+        add(time, "unlock", texts.ACTION_UNLOCK, "", authoring.unlock)
+        time.addSeparator()
         for e, emotion in enumerate(EMOTIONS):
             add(time, f"brush_{emotion}", texts.ACTION_BRUSH.format(emotion=emotion), str(e + 1),
                 lambda emotion=emotion: self.timeline.set_brush(emotion))  # fmt: skip
@@ -168,7 +179,9 @@ class MainWindow(QMainWindow):
         chosen = self._settings.value("theme", "dark")
         a.add_choice(view, texts.MENU_THEME, texts.THEMES, chosen, self.on_theme)
 
-        add(a.menu(texts.MENU_HELP), "about", texts.ACTION_ABOUT, "", self.about)
+        help_menu = a.menu(texts.MENU_HELP)
+        add(help_menu, "commands", texts.ACTION_COMMANDS, "Ctrl+K", self.commands.open)
+        add(help_menu, "about", texts.ACTION_ABOUT, "", self.about)
 
     def _join(self) -> None:
         authoring, control = self.authoring, self.control
@@ -234,8 +247,7 @@ class MainWindow(QMainWindow):
         """Choose a film of the actor."""
         path = self._ask_file("reference", texts.VIDEO_REFERENCE, texts.FILTER_REFERENCE)
         if path is not None:
-            document = self.authoring.document
-            self.authoring.push(SetReferenceVideo.on(document, ReferenceVideo(str(path))))
+            self.authoring.set_reference_video(ReferenceVideo(str(path)))
 
     def ask_save_film(self) -> None:
         """Choose where a copy of the film goes."""

@@ -15,7 +15,6 @@ from app.panels.transport import Transport
 from app.theme import colour
 from app.video_frames import VideoFrames
 from core.document.change import Change
-from core.document.edits import SetReferenceVideo
 from core.document.parts import ReferenceVideo
 
 COMPOSED, REFERENCE = "composed", "reference"
@@ -70,7 +69,7 @@ class VideoPane(Pane):
         self.video_view = VideoView()
         super().__init__(texts.VIDEO, self.video_view, texts.VIDEO_EMPTY)
         self._authoring = authoring
-        self._failure = ""
+        self._failure, self._shown = "", None
         self._frames = VideoFrames(authoring.jobs, "video", self)
         self._frames.arrived.connect(self.video_view.show_frame)
         self._frames.failed.connect(self.on_failed)
@@ -127,7 +126,7 @@ class VideoPane(Pane):
 
     # Reactions
 
-    def on_document_changed(self, change: Change, origin: object) -> None:
+    def on_document_changed(self, change: Change, _origin: object) -> None:
         """Follow the length of the speech and the choice of a film."""
         document = self._authoring.document
         if change & Change.ALIGNMENT:
@@ -135,12 +134,12 @@ class VideoPane(Pane):
             self.on_playhead_moved(self._authoring.view.playhead_s)
         if change & Change.REFERENCE_VIDEO:
             reference = document.reference_video
-            if origin is not self and reference is not None:
+            if reference is not None:
                 self.offset.blockSignals(True)
                 self.offset.setValue(reference.offset_s)
                 self.offset.blockSignals(False)
-            if origin is not self:
-                self.source.choose(REFERENCE if reference is not None else COMPOSED)
+            self.source.choose(REFERENCE if reference is not None else COMPOSED)
+            if self._shown != self.path:
                 self._show_source()
             self.on_playhead_moved(self._authoring.view.playhead_s)
 
@@ -149,7 +148,7 @@ class VideoPane(Pane):
         reference = self._authoring.document.reference_video
         if reference is not None:
             moved = ReferenceVideo(reference.path, offset_s)
-            self._authoring.push(SetReferenceVideo.on(self._authoring.document, moved, id(self)), self)
+            self._authoring.set_reference_video(moved, id(self))
 
     def on_playhead_moved(self, time_s: float) -> None:
         """Show the picture at the playhead."""
@@ -170,7 +169,7 @@ class VideoPane(Pane):
         self._frames.set_video(None)
 
     def _show_source(self) -> None:
-        self._failure = ""
+        self._failure, self._shown = "", self.path
         self.video_view.clear()
         self._frames.set_video(self.path)
         for widget, shown in ((self.compose_button, False), (self.save_button, False), (self.open_button, True),

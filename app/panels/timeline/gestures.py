@@ -10,8 +10,7 @@ from PySide6.QtGui import QPainter, QPen
 from app import texts
 from app.panels.timeline.snapping import snapped
 from app.theme import STEP, colour, small_font, theme
-from core.document.transcript_edits import SHORTEST_PHONEME_S, MovePhonemeBoundary
-from core.speech.emotion_painting import painted
+from core.document.transcript_edits import SHORTEST_PHONEME_S
 
 if TYPE_CHECKING:
     from app.panels.timeline.timeline import Timeline
@@ -46,9 +45,7 @@ class Scrub:
         """See `Gesture`."""
         self._dragging = self._dragging or abs(at.x() - self._pressed_x) >= _DRAG_PX
         if self._dragging:
-            time_s = self._timeline.scale.time_s(at.x())
-            self._timeline.authoring.player.scrub(time_s)
-            self._timeline.authoring.view.move_playhead(time_s)
+            self._timeline.authoring.scrub(self._timeline.scale.time_s(at.x()))
 
     def release(self, at: QPointF) -> None:
         """See `Gesture`."""
@@ -65,7 +62,7 @@ class Scrub:
 
     def cancel(self) -> None:
         """See `Gesture`."""
-        self._timeline.authoring.player.end_scrub()
+        self._timeline.authoring.end_scrub()
 
     def paint(self, painter: QPainter) -> None:
         """See `Gesture`."""
@@ -90,7 +87,7 @@ class DragBoundary:
     def release(self, at: QPointF) -> None:
         """See `Gesture`."""
         if self._time_s != self._began_s:
-            self._timeline.ask(lambda document: MovePhonemeBoundary.on(document, self._slot, self._time_s))
+            self._timeline.authoring.move_boundary(self._slot, self._time_s)
 
     def cancel(self) -> None:
         """See `Gesture`."""
@@ -129,12 +126,7 @@ class PaintEmotion:
 
     def release(self, at: QPointF) -> None:
         """See `Gesture`."""
-        intensity = round(self._intensity, 2)
-        label = (
-            texts.EDIT_ERASE_EMOTION if self._emotion == "neutral" else texts.EDIT_PAINT.format(emotion=self._emotion)
-        )
-        modifiers = painted(self._timeline.authoring.document.modifiers, *self._span_s, self._emotion, intensity)
-        self._timeline.authoring.set_emotion(modifiers, label)
+        self._timeline.authoring.paint_emotion(*self._span_s, self._emotion, round(self._intensity, 2))
 
     def cancel(self) -> None:
         """See `Gesture`."""

@@ -8,8 +8,6 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QCompleter, QLineEdit, QMenu
 
 from app import texts
-from core.document.edits import LockSlots, PinMotionNode, UnlockSlots
-from core.document.transcript_edits import MergePhonemes, RenamePhoneme, SplitPhoneme
 from core.speech.phoneme import PHONEMES
 
 if TYPE_CHECKING:
@@ -48,7 +46,7 @@ class PhonemeEditor(QLineEdit):
         self.hide()
         self._timeline.setFocus()
         phone = self.text().strip().lower()
-        self._timeline.ask(lambda document: RenamePhoneme.on(document, self._slot, phone))
+        self._timeline.authoring.rename_phoneme(self._slot, phone)
 
     def keyPressEvent(self, event) -> None:
         """Escape leaves it."""
@@ -73,18 +71,14 @@ def phoneme_menu(timeline: Timeline, slot: int, time_s: float) -> QMenu:
     menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
     phone = phonemes[slot].phone
     menu.addAction(texts.RENAME_PHONEME.format(phone=phone), lambda: timeline.rename(slot))
-    menu.addAction(
-        texts.SPLIT_PHONEME.format(phone=phone), lambda: timeline.ask(lambda d: SplitPhoneme.on(d, slot, time_s))
-    )
-    merge = menu.addAction(texts.MERGE_PHONEME, lambda: timeline.ask(lambda d: MergePhonemes.on(d, slot)))
+    menu.addAction(texts.SPLIT_PHONEME.format(phone=phone), lambda: authoring.split_phoneme(slot, time_s))
+    merge = menu.addAction(texts.MERGE_PHONEME, lambda: authoring.merge_phoneme(slot))
     merge.setEnabled(slot + 1 < len(phonemes))
     menu.addSeparator()
-    unpin = menu.addAction(texts.ACTION_UNPIN, lambda: timeline.ask(lambda d: PinMotionNode.on(d, slot, None)))
-    unpin.setEnabled(slot in document.pins)
     span = authoring.view.span
-    first, last = span if span is not None and span[0] <= slot <= span[1] else (slot, slot)
-    slots = range(first, last + 1)
-    locks = UnlockSlots if all(p in document.locks for p in slots) else LockSlots
-    text = texts.ACTION_UNLOCK if locks is UnlockSlots else texts.ACTION_LOCK
-    menu.addAction(text, lambda: timeline.ask(lambda d: locks.on(d, slots)))
+    if span is None or not span[0] <= slot <= span[1]:
+        authoring.view.select_slot(slot)
+    menu.addAction(texts.ACTION_UNPIN, authoring.unpin).setEnabled(slot in document.pins)
+    menu.addAction(texts.ACTION_LOCK, authoring.lock)
+    menu.addAction(texts.ACTION_UNLOCK, authoring.unlock).setEnabled(slot in document.locks)
     return menu

@@ -49,7 +49,7 @@ def paint_lanes(timeline: Timeline, picture: QPixmap) -> None:
     paint_locks(painter, lanes["phonemes"], scale, [slots[p] for p in document.locks])
     phones = [(u.phone, u.start_s, u.end_s) for u in transcript.phonemes]
     paint_boxes(painter, lanes["phonemes"], scale, phones, view.slot, frozenset(document.pins))
-    paint_changed(painter, lanes["phonemes"], scale, [slots[p] for p in timeline.changed_slots])
+    paint_changed(painter, lanes["phonemes"], scale, [slots[p] for p in timeline.authoring.changed_slots])
     paint_emotions(painter, lanes["emotion"], scale, document.modifiers, end_s)
     if document.breakdown is not None and len(document.breakdown) == len(slots):
         paint_costs(painter, lanes["cost"], scale, slots, document.breakdown)

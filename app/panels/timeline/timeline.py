@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QPainter, QPixmap
 from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
@@ -21,8 +19,6 @@ from app.panels.timeline.snapping import FREE, PHONEMES, WORDS
 from app.panels.timeline.wave import Peaks
 from app.theme import STEP, colour, theme
 from core.document.change import Change
-from core.document.document import Document, Edit
-from core.errors import UserFacingError
 from core.media.audio import Audio
 from core.media.video import FRAME_RATES
 from core.progress import Progress
@@ -60,8 +56,6 @@ class Timeline(QWidget):
         self._wants_spectrogram = False
         self._start_s, self._shown_s = 0.0, 1.0
         self._gesture: Gesture | None = None
-        self._used: np.ndarray | None = None
-        self.changed_slots: tuple[int, ...] = ()
         self._lanes_picture: QPixmap | None = None  # painted once; only the playhead moves sixty times a second
         self._editor = PhonemeEditor(self)
         self.setStatusTip(texts.TIMELINE_TIP)
@@ -119,30 +113,9 @@ class Timeline(QWidget):
         if change & Change.OUTPUT:
             output = self.authoring.document.output
             self.ruler = replace(self.ruler, fps=FRAME_RATES[output.frame_rate], first_frame=output.start_frame)
-        if change & Change.PATH:
-            self._find_changed()
         if change & Change.ALIGNMENT:
             self._give_up()
         self.renew()
-
-    def _find_changed(self) -> None:
-        """Tell which slots another node says since the motion before; none when all of it is new."""
-        answer = self.authoring.document.answer
-        used = None if answer is None else np.asarray(answer.path.nodes)
-        comparable = used is not None and self._used is not None and len(used) == len(self._used)
-        self.changed_slots = tuple(np.flatnonzero(used != self._used).tolist()) if comparable else ()
-        self._used = used
-
-    def ask(self, make_edit: Callable[[Document], Edit]) -> None:
-        """Do an edit of the document, or say why it cannot be done."""
-        try:
-            edit = make_edit(self.authoring.document)
-        except UserFacingError as error:
-            self.authoring.failed.emit(error.message, error.remedy)
-            return
-        self.authoring.push(edit)
-        if edit.note:
-            self.authoring.noted.emit(edit.note)
 
     def renew(self) -> None:
         """Paint the lanes anew."""
@@ -239,6 +212,22 @@ class Timeline(QWidget):
     def rename(self, slot: int) -> None:
         """Let the phone of a slot be typed."""
         self._editor.open(slot)
+
+    def rename_selected(self) -> None:
+        """Let the phone of the selected slot be typed."""
+        if self.authoring.view.slot is not None:
+            self.rename(self.authoring.view.slot)
+
+    def split_at_playhead(self) -> None:
+        """Make two utterances of the one at the playhead."""
+        slot = self.authoring.view.slot_at(self.authoring.view.playhead_s)
+        if slot is not None:
+            self.authoring.split_phoneme(slot, self.authoring.view.playhead_s)
+
+    def merge_selected(self) -> None:
+        """Let the selected utterance take over the next one."""
+        if self.authoring.view.slot is not None:
+            self.authoring.merge_phoneme(self.authoring.view.slot)
 
     def _give_up(self) -> None:
         if self._gesture is not None:
