@@ -14,6 +14,7 @@ from core.speech.transcript import PhonemeUtterance, Transcript, WordUtterance
 
 PHONES = ("m", "aa", "iy", "w", "ah", "b")
 RATE_HZ = 60.0
+WAIT_MS = 20_000
 SPOKEN = ("m", "aa", "b", "iy", "w", "ah")
 PHONE_S = 0.15
 
@@ -115,3 +116,24 @@ def choose(monkeypatch):
         monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (queue.pop(0), ""))
 
     return answer
+
+
+@pytest.fixture
+def animated(qtbot, open_window, choose, database_path, speech_path):
+    """A window in which the hum was opened and Synthesise pressed, all through its buttons."""
+    from PySide6.QtCore import Qt
+    from PySide6.QtTest import QTest
+
+    def click(widget):
+        QTest.mouseClick(widget, Qt.MouseButton.LeftButton, pos=widget.rect().center())
+
+    window = open_window()
+    choose(database_path, speech_path)
+    click(window.control.open_database_button)
+    qtbot.waitUntil(lambda: window.authoring.document.database is not None, timeout=WAIT_MS)
+    window.control.open_speech_action.trigger()
+    qtbot.waitUntil(lambda: window.authoring.document.speech is not None, timeout=WAIT_MS)
+    click(window.control.synthesise_button)
+    qtbot.waitUntil(lambda: window.authoring.document.answer is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not window.motion.is_empty)
+    return window

@@ -20,7 +20,9 @@ from core.errors import UserFacingError
 from core.motion.corpus import Corpus
 from core.motion.motion_files import read_motion, write_c3d
 from core.motion.recording import Recording
+from core.search.compute import DeviceFailed
 from core.speech.transcript import PhonemeUtterance, Transcript
+from gpu.opencl.min_plus import OpenClKernels
 
 
 @pytest.fixture(scope="session")
@@ -89,6 +91,7 @@ def test_synth_writes_film_and_markers_and_tells_the_path(efase, demo, tmp_path)
         demo.nodes.row(row["node"])
     assert set(answer["seconds"]) == {"align", "search", "synthesis", "render"}
     assert "opencl" in answer["backend"] or "numpy" in answer["backend"]
+    assert set(answer["device"]) == {"backend", "device", "api", "driver", "software", "method"}
 
     duration = soundfile.info(sentence.audio).duration
     positions, names, rate = read_motion(outputs[1])
@@ -340,13 +343,54 @@ def test_without_opencl_numpy_does_the_work_and_says_so(efase, demo, tmp_path, m
     def missing():
         raise UserFacingError("There is no OpenCL driver.")
 
-    monkeypatch.setattr("gpu.device._open_opencl", missing)
+    monkeypatch.setattr("gpu.opencl.min_plus.able_devices", missing)
+    monkeypatch.setattr(
+        "gpu.choice.tried", lambda backend: [{"backend": backend, "missing": f"There is no {backend}."}]
+    )
+    monkeypatch.setattr("gpu.choice.cache_dir", lambda: tmp_path)
     sentence = spoken()
     words = ["synth", sentence.audio, "--phones", sentence.phone_labels, "-o", tmp_path / "x.csv"]
     code, out, err = efase(*words)
-    assert code == 0 and one_sentence(err) and "numpy" in err
+    assert code == 0 and "There is no opencl." in err and "The search runs on numpy" in err
     code, out, err = efase(*words, "--backend", "opencl")
     assert (code, out) == (2, "") and one_sentence(err)
+
+
+def test_bench_takes_several_values_after_one_option(efase, demo):
+    words = ["bench", "search", "--nodes", "60", "--repeats", "1", "--json"]
+    code, out, _ = efase(*words, "--phonemes", "3", "5", "--backends", "numpy", "relaxation")
+    assert code == 0
+    rows = json.loads(out)["rows"]
+    expected = [("numpy", 3), ("numpy", 5), ("relaxation", 3), ("relaxation", 5)]
+    assert [(row["backend"], row["phonemes"]) for row in rows] == expected
+    code, out, err = efase(*words, "--phonemes", "3", "--backends", "numpy", "abacus")
+    assert (code, out) == (2, "") and one_sentence(err) and "abacus" in err
+
+
+def test_a_device_lost_in_mid_work_is_a_warning_and_the_answer_the_same(efase, demo, tmp_path, monkeypatch):
+    sentence = spoken()
+    words = ["synth", sentence.audio, "--phones", sentence.phone_labels, "-o", tmp_path / "x.csv", "--json"]
+    _, out, _ = efase(*words, "--backend", "opencl")
+    whole = json.loads(out)
+    assert whole["device"]["backend"] == "opencl" and whole["device"]["method"] == "exhaustive"
+    assert whole["device"]["software"] in (True, False) and whole["device"]["api"].startswith("OpenCL")
+    steps = iter(range(5))
+    step = OpenClKernels.min_plus
+
+    def failing(kernels, front):
+        if next(steps, None) is None:
+            raise DeviceFailed("The OpenCL device failed (OUT_OF_RESOURCES).")
+        return step(kernels, front)
+
+    monkeypatch.setattr(OpenClKernels, "min_plus", failing)
+    code, out, _ = efase(*words, "--backend", "opencl")
+    lost = json.loads(out)
+    assert code == 0
+    assert "The OpenCL device failed (OUT_OF_RESOURCES). The search goes on with numpy." in lost["warnings"]
+    assert lost["device"]["backend"] == "numpy"
+    assert (lost["phonemes"], lost["cost"]) == (whole["phonemes"], whole["cost"])
+    _, out, _ = efase(*words)
+    assert json.loads(out)["device"]["method"] == "relaxation"
 
 
 @pytest.fixture

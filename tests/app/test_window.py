@@ -33,21 +33,6 @@ def map_point(window, at):
     return window.isomap.canvas.mapFromScene(scene)
 
 
-@pytest.fixture
-def animated(qtbot, open_window, choose, database_path, speech_path):
-    """A window in which the hum was opened and Synthesise pressed, all through its buttons."""
-    window = open_window()
-    choose(database_path, speech_path)
-    click(window.control.open_database_button)
-    qtbot.waitUntil(lambda: window.authoring.document.database is not None, timeout=WAIT_MS)
-    window.control.open_speech_action.trigger()
-    qtbot.waitUntil(lambda: window.authoring.document.speech is not None, timeout=WAIT_MS)
-    click(window.control.synthesise_button)
-    qtbot.waitUntil(lambda: window.authoring.document.answer is not None, timeout=WAIT_MS)
-    qtbot.waitUntil(lambda: not window.motion.is_empty)
-    return window
-
-
 def test_every_pane_says_what_to_do_next_until_it_has_something_to_show(open_window):
     window = open_window()
     for pane in (window.motion, window.video, window.isomap, window.preview):
