@@ -153,7 +153,7 @@ def _row(way: _Way, request: SearchRequest, memory: MemoryReader, repeats: int) 
     began = time.perf_counter()
     while len(seconds) < repeats and (len(seconds) < _FEWEST or time.perf_counter() - began < _MOST_S):
         seconds.append(timed(lambda: way.solve(request)))
-        readings.append(memory.bytes_per_s(0.25))
+        readings.append(memory.bytes_per_s(0.5))
     cold_s, read_bytes_per_s = statistics.median(seconds), statistics.median(readings)
     row: dict[str, object] = {
         **way.report.as_dict(), "backend": way.name, "phonemes": request.n_slots, "nodes": len(way.costs.terms.nodes),
@@ -165,7 +165,7 @@ def _row(way: _Way, request: SearchRequest, memory: MemoryReader, repeats: int) 
         row["fraction_of_bandwidth"] = row["bytes_moved"] / cold_s / read_bytes_per_s
     if way.has_session:
         row.update(_edits(way, request, repeats), tables_on=describe(way.kernels))
-    return {**row, "peak_mb": peak_mb()}
+    return {**row, "peak_mb": peak_mb() - memory.n_bytes / (1 << 20)}
 
 
 def _edits(way: _Way, request: SearchRequest, repeats: int) -> dict[str, float | int]:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-_READ_ELEMENTS = 128 << 20  # 512 MiB of float32, which no cache holds
+_READ_ELEMENTS = 64 << 20  # 256 MiB of float32, which no cache holds
 _STATUS = Path("/proc/self/status")
 
 
@@ -38,12 +38,12 @@ class Machine:
 
 
 class MemoryReader:
-    """Reads 512 MiB of float32 by all cores, again and again, and tells how fast that went."""
+    """Reads 256 MiB of float32 by all cores, again and again, and tells how fast that went."""
 
     def __init__(self) -> None:
         self.cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
         data = np.ones(_READ_ELEMENTS, np.float32)
-        self._n_bytes = data.nbytes
+        self.n_bytes = data.nbytes
         self._parts = np.array_split(data, self.cores)
         self._pool = ThreadPoolExecutor(self.cores)
 
@@ -51,7 +51,7 @@ class MemoryReader:
         """Read once; ``share`` of the data will do where many readings are taken."""
         parts = [part[: int(len(part) * share)] for part in self._parts]
         seconds = timed(lambda: list(self._pool.map(np.max, parts)))
-        return self._n_bytes * share / seconds
+        return self.n_bytes * share / seconds
 
     def machine(self, repeats: int = 7) -> Machine:
         """Return the machine, with the best of ``repeats`` readings."""

@@ -49,7 +49,7 @@ def test_an_error_of_opengl_is_a_failed_device():
     kernels.prepare(np.ones((8, 8), np.float32))
     with kernels._ctx:
         kernels._maps["CostValueMap"].bind_to_storage_buffer(10_000)  # OpenGL notes an error and goes on
-    with pytest.raises(DeviceFailed, match="^The OpenGL device"):
+    with pytest.raises(DeviceFailed, match="The OpenGL device"):
         kernels.min_plus(np.ones(8))
     assert np.array_equal(kernels.min_plus(np.ones(8)), np.full(8, 2.0))
     kernels.release()
