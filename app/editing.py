@@ -13,12 +13,11 @@ from app import texts
 from app.looking import Looking
 from app.undo import EditCommand
 from core.document import transcript_edits
+from core.document.curation_edits import RemoveMotionNodes, RestoreMotionNodes
 from core.document.document import Edit
 from core.document.edits import (
     LockSlots,
     PinMotionNode,
-    RemoveMotionNodes,
-    RestoreMotionNodes,
     SetEmotion,
     SetOutput,
     SetReferenceVideo,

@@ -74,30 +74,37 @@ def connect(path: Path, kind: FileKind, writable: bool = True) -> sqlite3.Connec
         raise UserFacingError(f"'{path}' cannot be read: {error.strerror or error}.") from error
     if header != _HEADER:
         raise UserFacingError(f"'{path}' is not an {kind.what}.")
-    connection = _connected(path, "rw" if writable else "ro")
+    connection = None
     try:
+        connection = _connected(path, "rw" if writable else "ro")
         _check(connection, path, kind)
+        return connection
     except sqlite3.DatabaseError as error:
-        connection.close()
+        if connection is not None:
+            connection.close()
         if (getattr(error, "sqlite_errorname", None) or "").startswith(
             ("SQLITE_CORRUPT", "SQLITE_NOTADB", "SQLITE_ERROR")
         ):
             raise Damaged(str(error)) from error
         raise refused(path, error, "read") from error
     except BaseException:
-        connection.close()
+        if connection is not None:
+            connection.close()
         raise
-    return connection
 
 
 def _connected(path: Path, mode: str, more: str = "") -> sqlite3.Connection:
     uri = f"{path.absolute().as_uri()}?mode={mode}{more}"
     connection = sqlite3.connect(uri, timeout=_WAIT_S, isolation_level=None, uri=True, check_same_thread=False)
-    connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _LARGEST_VALUE_BYTES)
-    # a file from elsewhere shall not run code of its own
-    connection.execute("PRAGMA trusted_schema = OFF")
-    connection.execute("PRAGMA cell_size_check = ON")
-    connection.execute("PRAGMA synchronous = FULL")
+    try:
+        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _LARGEST_VALUE_BYTES)
+        # a file from elsewhere shall not run code of its own
+        connection.execute("PRAGMA trusted_schema = OFF")
+        connection.execute("PRAGMA cell_size_check = ON")
+        connection.execute("PRAGMA synchronous = FULL")
+    except BaseException:
+        connection.close()
+        raise
     return connection
 
 

@@ -131,6 +131,24 @@ class Document:
             self.shared_removals = MappingProxyType(dict(shared))
             self._tell(Change.CURATION, origin)
 
+    def load(self, state: ProjectState) -> None:
+        """Take another project whole; there is no way back, so views and undo stack begin anew."""
+        for part in fields(ProjectState):
+            setattr(self, part.name, getattr(state, part.name))
+        self.shared_removals = EMPTY
+        self.answer = self.prices = self.breakdown = None
+        everything = NOTHING
+        for change in Change:
+            everything |= change
+        self._tell(everything, None)
+
+    def take_database(self, database: MotionDatabase, shared: Mapping[str, Removal]) -> None:
+        """Take the database that the project refers to, once it was found."""
+        self.database, self.database_reference = database, DatabaseReference.to(database)
+        self.shared_removals = MappingProxyType(dict(shared))
+        self.answer = self.prices = self.breakdown = None
+        self._tell(Change.NODES | Change.CLUSTERS | Change.CURATION | Change.PATH | Change.PRICES, None)
+
     def state(self) -> ProjectState:
         """Return all that belongs to the project."""
         return ProjectState(**{part.name: getattr(self, part.name) for part in fields(ProjectState)})

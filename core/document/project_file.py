@@ -2,7 +2,8 @@
 
 The state is kept four times over, in tables of their own that are written in turn, each with its revision and a digest.
 So a file that is copied in the very moment of an edit (SQLite's locks mean nothing to a copying program) holds one
-table that is torn, and three that are whole: the newest of those is the project after its last edit but one.
+table that is torn, and three that are whole: the newest of those is the project after its last edit but one. A new
+sound likewise goes into another table than the sound in use.
 """
 
 from __future__ import annotations
@@ -26,15 +27,16 @@ from core.media.swap_in import swapped_in
 from core.sqlite_file import Damaged, FileKind, transaction
 
 SUFFIX = ".efase"
-_N_STATES = 4
-_STATES = tuple(f"state{i}" for i in range(_N_STATES))
+_STATES = tuple(f"state{i}" for i in range(4))
+SOUNDS = tuple(f"sound{i}" for i in range(4))
 _LONGEST_CONTENT = 1 << 28
 _LONGEST_VERSION_NAME = 200
 KIND = FileKind(
     what="eFASE project", application_id=0x65464153, version=(1, 0),
     tables={
         **{name: f"CREATE TABLE {name} (revision INTEGER, digest TEXT, content TEXT)" for name in _STATES},
-        "sound": "CREATE TABLE sound (digest TEXT PRIMARY KEY, data BLOB NOT NULL)",
+        # no index: it would be shared by all sounds of the table, and there are few
+        **{name: f"CREATE TABLE {name} (digest TEXT NOT NULL, data BLOB NOT NULL)" for name in SOUNDS},
         "version": "CREATE TABLE version (name TEXT PRIMARY KEY, made TEXT NOT NULL, content TEXT NOT NULL)",
     },
 )  # fmt: skip
@@ -64,7 +66,7 @@ class ProjectFile:
         self._lock, self._connection = lock, connection
         self._revision, self.content = _newest(connection, path)
         self._text = self.content.to_json()
-        self._sounds = {digest for (digest,) in connection.execute("SELECT digest FROM sound")}
+        self._sounds = _sound_tables(connection)
         self.said = said
 
     @classmethod
@@ -110,7 +112,7 @@ class ProjectFile:
     # Saving
 
     def save(self, content: ProjectContent, audio: Audio | None = None) -> None:
-        """Write ``content``, and its sound if the file does not have it yet, in one transaction.
+        """Write ``content`` in one transaction; its sound, if the file does not have it yet, goes before in another.
 
         Raises `UserFacingError` when it cannot be written (a full disk), or when another machine wrote the file.
         """
@@ -118,18 +120,22 @@ class ProjectFile:
         if text == self._text:
             return
         sound = content.sound
-        with _told(self.path), transaction(self._connection):
-            if _newest_revision(self._connection) != self._revision:
-                raise UserFacingError(
-                    f"'{self.path}' was changed by another window.", "Save a copy of what is open here."
-                )
+        with _told(self.path):
             if sound is not None and sound.digest not in self._sounds:
-                _write_sound(self._connection, audio)
-            _write_state(self._connection, self._revision + 1, text)
+                in_use = self.content.sound
+                table = SOUNDS[(SOUNDS.index(self._sounds[in_use.digest]) + 1) % len(SOUNDS)] if in_use else SOUNDS[0]
+                with transaction(self._connection):
+                    row = (sound.digest, audio.kept)
+                    self._connection.execute(f"INSERT INTO {table} VALUES (?, ?)", row)
+                self._sounds[sound.digest] = table
+            with transaction(self._connection):
+                if _newest_revision(self._connection) != self._revision:
+                    raise UserFacingError(
+                        f"'{self.path}' was changed by another window.", "Save a copy of what is open here."
+                    )
+                write_state(self._connection, self._revision + 1, text)
         self._revision += 1
         self._text, self.content = text, content
-        if sound is not None:
-            self._sounds.add(sound.digest)
 
     def audio(self, content: ProjectContent) -> Audio | None:
         """Return the sound that ``content`` refers to; raises `UserFacingError` when it is damaged."""
@@ -236,15 +242,16 @@ def _made_writable(connection: sqlite3.Connection, path: Path) -> tuple[str, ...
 def _make(path: Path, content: ProjectContent) -> None:
     sqlite_file.create(path, KIND)
     with contextlib.closing(sqlite_file.connect(path, KIND)) as connection, transaction(connection):
-        _write_state(connection, 1, content.to_json())
+        write_state(connection, 1, content.to_json())
 
 
 def _digest(revision: int, text: str) -> str:
     return hashlib.sha256(f"{revision}\n{text}".encode()).hexdigest()
 
 
-def _write_state(connection: sqlite3.Connection, revision: int, text: str) -> None:
-    table = _STATES[revision % _N_STATES]
+def write_state(connection: sqlite3.Connection, revision: int, text: str) -> None:
+    """Write a state in place of the one that is four revisions older."""
+    table = _STATES[revision % len(_STATES)]
     connection.execute(f"DELETE FROM {table}")
     connection.execute(f"INSERT INTO {table} VALUES (?, ?, ?)", (revision, _digest(revision, text), text))
 
@@ -267,13 +274,37 @@ def whole_states(connection: sqlite3.Connection) -> list[tuple[int, str]]:
     return sorted(found, reverse=True)
 
 
+def has_sound(connection: sqlite3.Connection, text: str) -> bool:
+    """Whether the sound that a state refers to is there and whole; a state that nobody would believe refers to none."""
+    try:
+        content = ProjectContent.from_json(text)
+        return content.sound is None or _sound_bytes(connection, content.sound.digest) is not None
+    except Unbelievable:
+        return True
+    except sqlite3.DatabaseError:
+        return False
+
+
+def _sound_bytes(connection: sqlite3.Connection, digest: str) -> bytes | None:
+    for table in SOUNDS:
+        for (data,) in connection.execute(f"SELECT data FROM {table} WHERE digest = ?", (digest,)).fetchall():
+            if isinstance(data, bytes) and hashlib.sha256(data).hexdigest() == digest:
+                return data
+    return None
+
+
+def _sound_tables(connection: sqlite3.Connection) -> dict[str, str]:
+    return {digest: table for table in SOUNDS for (digest,) in connection.execute(f"SELECT digest FROM {table}")}
+
+
 def is_torn(connection: sqlite3.Connection) -> bool:
     """Whether some state is not as it was written."""
     try:
         n_rows = sum(connection.execute(f"SELECT count(*) FROM {table}").fetchone()[0] for table in _STATES)
+        states = whole_states(connection)
+        return n_rows != len(states) or not all(has_sound(connection, text) for _, text in states[:1])
     except sqlite3.DatabaseError:
         return True
-    return n_rows != len(whole_states(connection))
 
 
 def _newest(connection: sqlite3.Connection, path: Path) -> tuple[int, ProjectContent]:
@@ -291,18 +322,13 @@ def beyond_repair(path: Path, why: object) -> UserFacingError:
     return UserFacingError(f"The project '{path}' is damaged ({why}).", "Open a copy of it, or begin a new one.")
 
 
-def _write_sound(connection: sqlite3.Connection, audio: Audio) -> None:
-    connection.execute("INSERT OR IGNORE INTO sound VALUES (?, ?)", (audio.digest, audio.kept))
-
-
 def _read_sound(connection: sqlite3.Connection, content: ProjectContent, path: Path) -> Audio | None:
     if content.sound is None:
         return None
-    digest = content.sound.digest
-    row = connection.execute("SELECT data FROM sound WHERE digest = ?", (digest,)).fetchone()
-    if row is None or not isinstance(row[0], bytes) or hashlib.sha256(row[0]).hexdigest() != digest:
+    data = _sound_bytes(connection, content.sound.digest)
+    if data is None:
         raise beyond_repair(path, "its sound is not what it was")
-    return audio_from_bytes(row[0], f"the sound of '{path.name}'")
+    return audio_from_bytes(data, f"the sound of '{path.name}'")
 
 
 def _drop_unused_sounds(connection: sqlite3.Connection) -> None:
@@ -310,9 +336,9 @@ def _drop_unused_sounds(connection: sqlite3.Connection) -> None:
     states = whole_states(connection)
     texts = [states[0][1]] if states else []
     texts += [text for (text,) in connection.execute("SELECT content FROM version")]
-    for (digest,) in connection.execute("SELECT digest FROM sound").fetchall():
+    for digest, table in _sound_tables(connection).items():
         if states and not any(digest in text for text in texts):
-            connection.execute("DELETE FROM sound WHERE digest = ?", (digest,))
+            connection.execute(f"DELETE FROM {table} WHERE digest = ?", (digest,))
 
 
 @contextlib.contextmanager

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import shutil
 import sqlite3
 import tempfile
@@ -11,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from core import sqlite_file
-from core.document.project_file import KIND, beyond_repair, whole_states
+from core.document.project_file import KIND, SOUNDS, beyond_repair, has_sound, whole_states, write_state
 from core.media.swap_in import swapped_in
 from core.sqlite_file import transaction
 
@@ -63,13 +62,14 @@ def _pad(path: Path) -> None:
 
 
 def _carry_over(source: sqlite3.Connection, target: sqlite3.Connection) -> bool:
-    states = whole_states(source)
-    for revision, text in states[:1]:
-        digest = hashlib.sha256(f"{revision}\n{text}".encode()).hexdigest()
-        target.execute("INSERT INTO state0 VALUES (?, ?, ?)", (revision, digest, text))
-    for table, n_columns in (("sound", 2), ("version", 3)):
+    """Copy sounds, versions and the newest state whose sound was saved; tell whether there was one."""
+    for table, n_columns in (*((name, 2) for name in SOUNDS), ("version", 3)):
         with contextlib.suppress(sqlite3.DatabaseError):
             marks = ", ".join("?" * n_columns)
             for row in source.execute(f"SELECT * FROM {table} NOT INDEXED"):
                 target.execute(f"INSERT OR IGNORE INTO {table} VALUES ({marks})", row)
-    return bool(states)
+    for revision, text in whole_states(source):
+        if has_sound(target, text):
+            write_state(target, revision, text)
+            return True
+    return False

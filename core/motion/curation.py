@@ -83,7 +83,7 @@ class CurationList:
         if not self._exists:
             return {}
         try:
-            with contextlib.closing(sqlite_file.connect(self.path, _KIND, writable=self._is_writable)) as connection:
+            with contextlib.closing(sqlite_file.connect(self.path, _KIND, writable=self.can_be_written)) as connection:
                 rows = connection.execute(
                     "SELECT node, who, at, why FROM removal LIMIT ?", (_MOST_REMOVALS,)
                 ).fetchall()
@@ -133,8 +133,12 @@ class CurationList:
         return self.path.exists() and self.path.stat().st_size > 0
 
     @property
-    def _is_writable(self) -> bool:
-        return os.access(self.path, os.W_OK) and os.access(self.path.parent, os.W_OK)
+    def can_be_written(self) -> bool:
+        """Whether `change` has a chance: the file and its folder are not read-only."""
+        folder = self.path.parent
+        while not folder.exists() and folder != folder.parent:
+            folder = folder.parent
+        return os.access(folder, os.W_OK) and (not self._exists or os.access(self.path, os.W_OK))
 
     def _refused(self, message: str) -> UserFacingError:
         return UserFacingError(

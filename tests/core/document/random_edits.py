@@ -12,12 +12,11 @@ import numpy as np
 
 from core.document.change import Change
 from core.document.content import ProjectContent
+from core.document.curation_edits import RemoveMotionNodes, RestoreMotionNodes
 from core.document.document import Document, Edit
 from core.document.edits import (
     FieldEdit,
     PinMotionNode,
-    RemoveMotionNodes,
-    RestoreMotionNodes,
     SetEmotion,
     SetFace,
     SetOutput,
@@ -45,7 +44,7 @@ def made_speech(seed: int, n_phones: int = 9) -> Speech:
     utterances = [PhonemeUtterance(phone, 0.1 * i, 0.1 * (i + 1)) for i, phone in enumerate(phones)]
     duration_s = round(0.1 * n_phones, 6)
     transcript = Transcript.covering(utterances, [WordUtterance("word", 0.1, 0.4)], duration_s)
-    samples = (rng.integers(-9000, 9000, round(duration_s * RATE_HZ)) / 32768).astype(np.float32)
+    samples = (rng.integers(-90, 90, round(duration_s * RATE_HZ)) / 32768).astype(np.float32)
     return Speech(Audio(samples, RATE_HZ, Path(f"speech-{seed}.wav")), transcript, f"text {seed} ✓")
 
 

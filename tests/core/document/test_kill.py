@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import random
 import shutil
 import subprocess
@@ -14,8 +13,12 @@ from pathlib import Path
 import pytest
 
 from core.document.content import ProjectContent
+from core.document.document import Document
+from core.document.edits import SetSpeech
 from core.document.project_file import ProjectFile
+from tests.core.document.random_edits import made_speech, random_edit
 
+PAGE = 4096
 REPOSITORY = Path(__file__).resolve().parents[3]
 
 
@@ -128,6 +131,38 @@ def test_1000_copies(own_folder):
     copy_while_open(own_folder, 1000)
 
 
-def test_what_the_editor_says_is_what_it_makes():
-    text = ProjectContent().to_json()
-    assert json.loads(text)["pins"] == []
+def tear_at_every_page(folder: Path, seed: int, n_edits: int) -> int:
+    """Mix the file's pages before and after each edit, split at each page; return how many mixtures were mended."""
+    chance, document, mended = random.Random(seed), Document(), 0
+    path, torn = folder / "whole.efase", folder / "torn.efase"
+    project = ProjectFile.create(path)
+    document.apply(SetSpeech.on(document, made_speech(0, n_phones=250)))
+    project.save(ProjectContent.of(document), document.speech.audio)
+    for _ in range(n_edits):
+        new_speech = chance.random() < 0.2
+        edit = SetSpeech.on(document, made_speech(chance.randrange(99), 250)) if new_speech else None
+        edit = edit or random_edit(document, chance)
+        if edit is None:
+            continue
+        document.apply(edit)
+        before, old = path.read_bytes(), project.content.to_json()
+        project.save(ProjectContent.of(document), document.speech.audio)
+        after, new = path.read_bytes(), project.content.to_json()
+        pages = range(PAGE, max(len(before), len(after)), PAGE)
+        for at in (at for at in pages if before[at : at + PAGE] != after[at : at + PAGE]):
+            for one, other in ((before, after), (after, before)):
+                torn.write_bytes(one[:at] + other[at:])
+                _, content, said = state_of(torn)
+                assert content in (old, new)
+                mended += bool(said)
+    project.close()
+    return mended
+
+
+def test_a_file_torn_at_any_page_is_what_it_was_before_or_after_the_edit(own_folder):
+    assert tear_at_every_page(own_folder, seed=1, n_edits=4) > 10
+
+
+@pytest.mark.prove
+def test_hundreds_of_torn_files(own_folder):
+    assert tear_at_every_page(own_folder, seed=2, n_edits=60) > 100
