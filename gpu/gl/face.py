@@ -21,6 +21,9 @@ from gpu.gl.surfaces import FaceSurfaces, kind_of_triangles
 _EDGE_ROW = 2048
 
 
+GHOST_RADIUS_MM = 1.1
+
+
 class Style(Enum):
     """How a face is shown (figures 11 and 14 of the eFASE paper)."""
 
@@ -43,6 +46,7 @@ class FaceRenderer:
         self._backdrop = compile_program(ctx, "glsl/background.vert", "glsl/background.frag")
         self._backdrop_array = ctx.vertex_array(self._backdrop, [])
         self.markers = MarkerCloud(ctx)
+        self.ghosts = MarkerCloud(ctx, GHOST_RADIUS_MM)
         grain = complexion.grain()
         self._grain = ctx.texture3d(grain.shape[:3], 4, grain.tobytes())
         self._grain.filter = moderngl.LINEAR, moderngl.LINEAR
@@ -160,7 +164,8 @@ class FaceRenderer:
     ) -> None:
         """Clear the framebuffer and draw one picture that fills it; alpha is 1 everywhere.
 
-        Without a face, wireframe and shaded show the markers as well.
+        Without a face, wireframe and shaded show the markers as well. With the markers come the ghosts: `ghosts`, what
+        they are compared with.
         """
         ctx = self._ctx
         width, height = framebuffer.size
@@ -175,12 +180,14 @@ class FaceRenderer:
             self._draw_mesh(view, projection, (width, height), style)
         if show_markers or not has_mesh:
             self.markers.draw(view, projection, (width, height))
+            self.ghosts.draw(view, projection, (width, height))
         ctx.enable_only(moderngl.NOTHING)
 
     def release(self) -> None:
         """Free all GL objects; the renderer is of no use afterwards."""
         self._free_mesh()
         self.markers.release()
+        self.ghosts.release()
         self.set_texture(None)
         for thing in (self._backdrop_array, self._backdrop, self._wire, self._grain):
             thing.release()

@@ -13,28 +13,32 @@ from gpu.sources import shader_source
 
 _COLUMNS = 16  # rows are padded to a multiple of as many columns
 _GROUPS_A_CORE = 4  # when one core is slower, the others take over some of its stripes
+_THREADS = 128  # of a graphics card, to a row
+_STRIPES = 64  # of rows, so that a graphics card has threads enough for the columns
 
 
 class OpenClKernels:
-    """`core.search.compute.SearchKernels` on an OpenCL device. Reference: `NumpyKernels`; text: min_plus.cl.
+    """`core.search.compute.SearchKernels` on an OpenCL device.
+
+    Reference: `NumpyKernels`; text: min_plus.cl for processors, min_plus_wide.cl for graphics cards.
 
     device : as `able_devices` lists them; the first that compiles the search when absent
-    Raises `UserFacingError` when there is none.
+    wide : which of the two texts; by the kind of device when absent
+    Raises `UserFacingError` when there is no such device.
     """
 
-    def __init__(self, device=None) -> None:
+    def __init__(self, device=None, wide: bool | None = None) -> None:
         import pyopencl as cl
 
         self._cl = cl
-        device, self._context, program, self._rows = _first_that_builds(
-            cl, able_devices() if device is None else [device]
-        )
+        devices = able_devices() if device is None else [device]
+        device, self._context, program, self._rows, self._wide = _first_that_builds(cl, devices, wide)
         self._queue = cl.CommandQueue(self._context)
-        self._forward = cl.Kernel(program, "min_plus")
-        self._both = cl.Kernel(program, "min_plus_both")
+        names = ("arrive", "leave") if self._wide else ("min_plus", "min_plus_both")
+        self._forward, self._backward = (cl.Kernel(program, name) for name in names)
         self._gather = cl.Kernel(program, "least_of_columns")
         self.report = report_of(device)
-        self._n_groups = _GROUPS_A_CORE * device.max_compute_units
+        self._n_groups = _STRIPES if self._wide else _GROUPS_A_CORE * device.max_compute_units
         self._buffers: dict[str, object] = {}
         self._n_nodes = self._stride = 0
         self._front = np.zeros(0)
@@ -71,31 +75,45 @@ class OpenClKernels:
 
     def min_plus(self, front: np.ndarray) -> np.ndarray:
         """See `SearchKernels.min_plus`."""
-        maps = self._buffers
         with self._failing():
             self._write_front(front)
-            self._forward(
-                self._queue, (self._n_groups,), (1,), maps["DistanceMap"], maps["PrevCostBufferMap"],
-                maps["CostValueMap"], np.uint32(self._n_nodes), np.uint32(self._stride),
-            )  # fmt: skip
+            self._enqueue_forward()
             return self._read("CostValueMap")
 
     def min_plus_both(self, front: np.ndarray, behind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """See `SearchKernels.min_plus_both`."""
-        maps, n_nodes, stride = self._buffers, np.uint32(self._n_nodes), np.uint32(self._stride)
+        behind = np.ascontiguousarray(behind, float)
         with self._failing():
             self._write_front(front)
-            behind = np.ascontiguousarray(behind, float)
-            self._cl.enqueue_copy(self._queue, maps["NextCostBufferMap"], behind, is_blocking=False)
-            self._both(
+            self._cl.enqueue_copy(self._queue, self._buffers["NextCostBufferMap"], behind, is_blocking=False)
+            self._enqueue_both()
+            return self._read("CostValueMap"), self._read("LeavingValueMap")
+
+    def _enqueue_forward(self) -> None:
+        maps, n_nodes, stride = self._buffers, np.uint32(self._n_nodes), np.uint32(self._stride)
+        given = maps["DistanceMap"], maps["PrevCostBufferMap"], maps["CostValueMap"]
+        if self._wide:
+            self._forward(self._queue, (self._n_nodes * _THREADS,), (_THREADS,), *given, stride)
+        else:
+            self._forward(self._queue, (self._n_groups,), (1,), *given, n_nodes, stride)
+
+    def _enqueue_both(self) -> None:
+        maps, n_nodes, stride = self._buffers, np.uint32(self._n_nodes), np.uint32(self._stride)
+        if self._wide:
+            self._enqueue_forward()
+            self._backward(
+                self._queue, (self._stride, self._n_groups), None, maps["DistanceMap"], maps["NextCostBufferMap"],
+                maps["CostBuffMap"], n_nodes, stride,
+            )  # fmt: skip
+        else:
+            self._backward(
                 self._queue, (self._n_groups,), (1,), maps["DistanceMap"], maps["PrevCostBufferMap"],
                 maps["NextCostBufferMap"], maps["CostValueMap"], maps["CostBuffMap"], n_nodes, stride,
             )  # fmt: skip
-            self._gather(
-                self._queue, (self._stride,), None, maps["CostBuffMap"], maps["LeavingValueMap"],
-                np.uint32(self._n_groups), stride,
-            )  # fmt: skip
-            return self._read("CostValueMap"), self._read("LeavingValueMap")
+        self._gather(
+            self._queue, (self._stride,), None, maps["CostBuffMap"], maps["LeavingValueMap"],
+            np.uint32(self._n_groups), stride,
+        )  # fmt: skip
 
     def _write_front(self, front: np.ndarray) -> None:
         self._front[: self._n_nodes] = front
@@ -156,21 +174,29 @@ def report_of(device) -> DeviceReport:
     )
 
 
-def _first_that_builds(cl, devices: list):
-    """Return (device, context, program, rows side by side) of the first that compiles the search."""
+def _first_that_builds(cl, devices: list, wide: bool | None):
+    """Return (device, context, program, rows side by side, whether it is wide) of the first that compiles."""
     refusals = []
     for device in devices:
-        # as many rows as 32 wide or 16 narrow registers hold beside what else a step needs
-        lanes, rows = (8, 16) if device.native_vector_width_double >= 8 else (4, 8)
-        source = shader_source("opencl/min_plus.cl", {"ROWS": rows, "LANES": lanes})
+        is_wide = not device.type & cl.device_type.CPU if wide is None else wide
+        lanes, rows = _registers_of(device)
+        if is_wide:
+            source = shader_source("opencl/min_plus_wide.cl", {"THREADS": _THREADS})
+        else:
+            source = shader_source("opencl/min_plus.cl", {"ROWS": rows, "LANES": lanes})
         try:
             context = cl.Context([device])
-            return device, context, cl.Program(context, source).build(), rows
+            return device, context, cl.Program(context, source).build(), rows, is_wide
         except cl.Error as error:
             refusals.append(f"{device.name.strip()}: {_reason(error)}")
     if refusals:
         raise UserFacingError(f"No OpenCL driver here can compile the search ({'; '.join(refusals)}).")
     raise UserFacingError("There is no OpenCL device with double precision on this machine.")
+
+
+def _registers_of(device) -> tuple[int, int]:
+    """Doubles to a vector, and rows side by side: as many as 32 wide or 16 narrow registers hold in a step."""
+    return (8, 16) if device.native_vector_width_double >= 8 else (4, 8)
 
 
 def _reason(error: Exception) -> str:

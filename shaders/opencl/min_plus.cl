@@ -1,4 +1,5 @@
 // One step of the dynamic programming search: the cheapest way to arrive at each motion node, and to leave it.
+// For processors: few wide cores, each of which reads memory in long runs. See min_plus_wide.cl for graphics cards.
 //
 // References: core/search/compute.py, NumpyKernels.min_plus and min_plus_both. Sums are double, so results equal the
 // reference bit by bit. The names of the buffers are those of Deng and Neumann 2008, table 3.
@@ -11,6 +12,7 @@
 // CostBuffMap         double (n_groups rows of `stride`), cheapest departure as far as each group's rows tell
 // LeavingValueMap     double (stride), result: cheapest departure
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
+#include "least_of_columns.cl"
 
 // Columns that stay in the first-level cache while all rows of a group pass over them.
 #define TILE 2048u
@@ -126,17 +128,4 @@ __kernel void min_plus_both(__global const float *restrict DistanceMap,
                     CostValueMap[m + row] = fmin(CostValueMap[m + row], least_lane(least[row]));
         }
     }
-}
-
-// One work-item owns one column: the least of what the groups found.
-__kernel void least_of_columns(__global const double *restrict CostBuffMap,
-                               __global double *restrict LeavingValueMap,
-                               const uint n_groups,
-                               const uint stride)
-{
-    const uint n = get_global_id(0);
-    double least = INFINITY;
-    for (uint group = 0; group < n_groups; ++group)
-        least = fmin(least, CostBuffMap[(ulong)group * stride + n]);
-    LeavingValueMap[n] = least;
 }
