@@ -189,8 +189,31 @@ def synth(
             print(path)
 
 
+@app.command()
+def evaluate(
+    db: Database = None,
+    corpus: Annotated[Path | None, typer.Option(help="Measure on this corpus folder instead.")] = None,
+    split: Annotated[str, typer.Option(help="test, tune or all.")] = "test",
+    engine: Annotated[list[str] | None, typer.Option(help="Repeat for more; all when absent.")] = None,
+    report: Annotated[Path | None, typer.Option(help="Folder for the page, its figures and the JSON.")] = None,
+    json: Json = False,
+) -> None:
+    """Measure engines on captured sentences that the database does not hold."""
+    from app.evaluate import PAGE, EvaluationJob, as_table, run
+
+    with progress_bar("evaluate") as progress:
+        answer = run(EvaluationJob(db, corpus, split, tuple(engine or ()), report), progress)
+    if json:
+        print_json(answer)
+    else:
+        print(as_table(answer))
+        if report is not None:
+            print(report / PAGE)
+
+
 @bench.command("search")
 def bench_search(
+    more: Annotated[list[str] | None, typer.Argument(hidden=True)] = None,
     db: Database = None,
     nodes: Annotated[int | None, typer.Option(min=1, help="Repeat or cut the database to this many nodes.")] = None,
     phonemes: Annotated[list[int] | None, typer.Option(min=1, help="Lengths; the paper's four when absent.")] = None,
@@ -201,6 +224,10 @@ def bench_search(
     """Measure the search: cold, after edits, with prices; beside a reference and the memory's speed."""
     from app import bench
 
+    # several values may follow one option, as in "--phonemes 14 24 --backends opencl glsl"
+    lengths = [word for word in more or [] if word.isdecimal() and int(word)]
+    phonemes = [*(phonemes or []), *map(int, lengths)]
+    backends = [*(backends or []), *(word for word in more or [] if word not in lengths)]
     database = _open(db)
     with progress_bar("bench") as progress:
         answer = bench.bench_search(

@@ -24,19 +24,26 @@ class CapturedTruth:
     positions : float64, shape (n_frames, n_markers, 3), mm, head space, at the rate of the capture: the database's
         markers, normalised as the database was
     usable : bool, shape (n_frames,); False in long gaps and beyond the end of what is said
+    joins : its roughness at phone boundaries, at the database's rate and through its principal components, which is all
+        that an engine can show; None without such boundaries
     """
 
     recording: Recording
     markers: MarkerSet
     positions: np.ndarray
     usable: np.ndarray
+    joins: Roughness | None
 
     @classmethod
     def of(cls, recording: Recording, database: MotionDatabase) -> CapturedTruth:
         """Normalise ``recording`` as ``database`` was; raises `UserFacingError` when it lacks one of the markers."""
         captured = in_head_space(recording, database.markers, database.with_scale)
-        in_time = np.arange(len(captured.face)) <= recording.transcript.duration_s * recording.rate_hz
-        return cls(recording, database.markers, captured.face, in_time & ~captured.masked)
+        transcript, rate_hz = recording.transcript, database.rate_hz
+        in_time = np.arange(len(captured.face)) <= transcript.duration_s * recording.rate_hz
+        raised = resample(captured.face, recording.rate_hz, rate_hz, max(1, round(transcript.duration_s * rate_hz)))
+        shown = database.pca.positions(database.pca.coefficients(raised))
+        joins = measures.roughness_at_joins(shown, transcript, rate_hz)
+        return cls(recording, database.markers, captured.face, in_time & ~captured.masked, joins)
 
     @property
     def rate_hz(self) -> float:
@@ -55,7 +62,7 @@ class Comparison:
 
     synthesised : float64, like ``truth.positions``
     n_slots, seconds : phonemes of the sentence, silences included, and what their synthesis took
-    joins, captured_joins : roughness at phone boundaries, both at the database's rate; None without such boundaries
+    joins : roughness at phone boundaries, at the rate of the motion; None without such boundaries
     """
 
     truth: CapturedTruth
@@ -63,20 +70,17 @@ class Comparison:
     n_slots: int
     seconds: float
     joins: Roughness | None
-    captured_joins: Roughness | None
 
     @classmethod
     def of(cls, truth: CapturedTruth, motion: MarkerMotion, seconds: float) -> Comparison:
         """Bring ``motion`` to the frames of the capture, as `core.motion.resample` does."""
         transcript, n_frames = truth.recording.transcript, len(truth.positions)
-        raised = resample(truth.positions, truth.rate_hz, motion.rate_hz, len(motion.positions))
         return cls(
             truth,
             resample(motion.positions, motion.rate_hz, truth.rate_hz, n_frames),
             len(transcript.phonemes),
             seconds,
             measures.roughness_at_joins(motion.positions, transcript, motion.rate_hz),
-            measures.roughness_at_joins(raised, transcript, motion.rate_hz),
         )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
@@ -24,7 +24,7 @@ class EngineResult:
     """One engine over all sentences.
 
     per_emotion : emotion to the scores of its sentences; per_phoneme : see `by_phoneme`
-    joins, captured_joins : mean roughness at phone boundaries, at the database's rate
+    joins : mean roughness at phone boundaries, at the database's rate
     """
 
     comparisons: tuple[Comparison, ...]
@@ -32,7 +32,6 @@ class EngineResult:
     per_emotion: Mapping[str, Scores]
     per_phoneme: Mapping[str, Mapping[str, float]]
     joins: Roughness | None
-    captured_joins: Roughness | None
 
     @property
     def seconds_per_sentence(self) -> float:
@@ -51,7 +50,7 @@ class EngineResult:
         }
         return cls(
             tuple(comparisons), scores(pairs), per_emotion, by_phoneme(pairs),
-            _mean(c.joins for c in comparisons), _mean(c.captured_joins for c in comparisons),
+            mean_roughness(c.joins for c in comparisons),
         )  # fmt: skip
 
     def as_dict(self) -> dict[str, object]:
@@ -60,7 +59,6 @@ class EngineResult:
             **asdict(self.scores),
             "seconds_per_sentence": self.seconds_per_sentence,
             "joins": None if self.joins is None else self.joins._asdict(),
-            "captured_joins": None if self.captured_joins is None else self.captured_joins._asdict(),
             "per_emotion": {emotion: asdict(found) for emotion, found in self.per_emotion.items()},
             "per_phoneme": {phone: dict(row) for phone, row in self.per_phoneme.items()},
         }
@@ -71,10 +69,12 @@ class Evaluation:
     """What was measured, on which sentences.
 
     floor : see `noise_floor`
+    captured_joins : mean roughness of the captures at phone boundaries
     """
 
     sentences: tuple[str, ...]
     floor: Scores
+    captured_joins: Roughness | None
     engines: Mapping[str, EngineResult]
 
     def as_dict(self) -> dict[str, object]:
@@ -82,7 +82,10 @@ class Evaluation:
         return {
             "sentences": len(self.sentences),
             "engines": {name: result.as_dict() for name, result in self.engines.items()},
-            "floor": asdict(self.floor),
+            "floor": {
+                **asdict(self.floor),
+                "joins": None if self.captured_joins is None else self.captured_joins._asdict(),
+            },
         }
 
 
@@ -121,7 +124,8 @@ def evaluate(
             comparisons.append(Comparison.of(truth, motion, time.perf_counter() - began))
         results[name] = EngineResult.of(comparisons)
     progress.step(1.0, "measured")
-    return Evaluation(tuple(r.sentence for r in recordings), noise_floor(truths), results)
+    return Evaluation(tuple(r.sentence for r in recordings), noise_floor(truths),
+                      mean_roughness(truth.joins for truth in truths), results)  # fmt: skip
 
 
 def noise_floor(truths: Sequence[CapturedTruth]) -> Scores:
@@ -150,6 +154,7 @@ def _sound(recording: Recording, database: MotionDatabase) -> Audio | None:
     return None if flac is None else audio_from_bytes(flac, f"the sound of '{recording.sentence}'")
 
 
-def _mean(found) -> Roughness | None:
+def mean_roughness(found: Iterable[Roughness | None]) -> Roughness | None:
+    """Mean over the sentences that have boundaries to measure; None when none has."""
     known = [roughness for roughness in found if roughness is not None]
     return Roughness(*(float(np.mean(column)) for column in zip(*known))) if known else None
