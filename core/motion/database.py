@@ -57,7 +57,8 @@ class MotionDatabase:
     nodes : the motion nodes
     sentences : in the order of their frames
     maps : phoneme name to its Isomap
-    weights : default search weights of this database
+    weights : search weights of this database
+    tuning : how they were tuned (see `core.evaluation.tuning`); empty while they are the untuned ones
     with_scale : each frame of its captures was scaled to the size of the rest pose (tracked video)
     held_out : sentence names by split (``tune``, ``test``), which made no node; see `held_out_recordings`
     report : what was done to the data, sentence by sentence of prose
@@ -81,7 +82,13 @@ class MotionDatabase:
     with_scale: bool = False
     held_out: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     report: Mapping[str, object] = field(default_factory=dict)
+    tuning: Mapping[str, object] = field(default_factory=dict)
     path: Path | None = None
+
+    @cached_property
+    def untuned_weights(self) -> SearchWeights:
+        """The weights of Deng and Neumann's formulas, from medians of this database, whatever is in use."""
+        return _weights(self.tuning["untuned_weights"]) if self.tuning else self.weights
 
     @cached_property
     def rest_coefficients(self) -> np.ndarray:
@@ -149,6 +156,7 @@ class MotionDatabase:
             "rate_hz": self.rate_hz,
             "maps": {phone: m.summary() for phone, m in self.maps.items()},
             "weights": self.weights.as_dict(),
+            "tuning": dict(self.tuning),
             "held_out": {split: len(names) for split, names in self.held_out.items()},
             "content_hash": self.content_hash,
             "report": dict(self.report),
@@ -229,6 +237,7 @@ def _read(file, path: Path) -> MotionDatabase:
         with_scale=bool(file.attrs.get("with_scale", False)),
         held_out={split: tuple(names) for split, names in held_out.items()},
         report=dict(plain_json(file.attrs["report"])),
+        tuning=_tuning(plain_json(file.attrs.get("tuning", "{}"))),
         path=path,
     )
 
@@ -249,7 +258,7 @@ def write_database(
             synthetic=database.synthetic, rate_hz=database.rate_hz, content_hash=database.content_hash,
             with_scale=database.with_scale,
             weights=json.dumps(database.weights.as_dict()), held_out=json.dumps(dict(database.held_out)),
-            report=json.dumps(dict(database.report)),
+            report=json.dumps(dict(database.report)), tuning=json.dumps(dict(database.tuning)),
         )  # fmt: skip
         file.create_dataset("markers/rest", data=database.markers.rest)
         file["markers"].attrs["json"] = database.markers.to_json()
@@ -278,6 +287,14 @@ def _weights(values: object) -> SearchWeights:
         return SearchWeights.from_dict(values)
     except UserFacingError as error:
         raise Unsound("its search weights are none") from error
+
+
+def _tuning(record: object) -> dict[str, object]:
+    if not isinstance(record, dict):
+        raise Unsound("what it says of its tuning is no record")
+    if record:
+        _weights(record["untuned_weights"])
+    return record
 
 
 def _map(file, phone: str, n_frames: int) -> PhonemeMap:
