@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 
 from app import texts
+from app.curating import Curating
 from app.editing import Editing
 from app.film import FilmComposer
 from app.loading import (
-    DemoSentence,
+    KnownSentence,
     OpenedDatabase,
     SpeechRequest,
+    list_captured_sentences,
+    load_captured_sentence,
     load_demo_sentence,
     open_motion_database,
     read_speech,
@@ -46,7 +50,9 @@ class Authoring(Editing):
         self.film = FilmComposer(self.document, self.jobs, self)
         self._rigs = Rigs(self.document, self.jobs, self)
         self._solving = Solving(self.document, self.jobs, self)
+        self.curating = Curating(self.document, self)
         self.document.changed.connect(self._on_document_changed)
+        self.curating.failed.connect(self.failed)
         self._solving.solved.connect(self._on_solved)
         self._rigs.changed.connect(self._on_rig_changed)
         self._rigs.failed.connect(self.failed)
@@ -74,9 +80,9 @@ class Authoring(Editing):
 
     def open_demo_sentence(self, name: str) -> None:
         """Choose one of the bundled sentences; its transcript and emotion are known, so it is animated at once."""
-        self.jobs.start("speech", texts.LOADING_SPEECH, name, load_demo_sentence, self._on_demo_sentence)
+        self.jobs.start("speech", texts.LOADING_SPEECH, name, load_demo_sentence, self._on_known_sentence)
 
-    def _on_demo_sentence(self, demo: DemoSentence) -> None:
+    def _on_known_sentence(self, demo: KnownSentence) -> None:
         is_first = self.document.speech is None
         emotion = texts.EDIT_SET_EMOTION.format(emotion=demo.emotion)
         self.undo_stack.beginMacro(texts.EDIT_CHOOSE_SPEECH)
@@ -85,6 +91,17 @@ class Authoring(Editing):
         self.undo_stack.endMacro()
         self._forget_the_start(is_first)
         self.synthesise()
+
+    def list_captured(self, done: Callable[[dict[str, str]], None]) -> None:
+        """Hand ``done`` all captured sentences, name to what is said; those that were held out come first."""
+        database = self.document.database
+        if database is not None:
+            self.jobs.start("captured", texts.LISTING_CAPTURED, database, list_captured_sentences, done)
+
+    def open_captured(self, name: str) -> None:
+        """Choose a captured sentence of the database, to compare its synthesis with it."""
+        request = (self.document.database, name)
+        self.jobs.start("speech", texts.LOADING_SPEECH, request, load_captured_sentence, self._on_known_sentence)
 
     def load_speech(self, request: SpeechRequest, then_synthesise: bool = False) -> None:
         """Read and align speech in the background."""
@@ -125,6 +142,13 @@ class Authoring(Editing):
         if is_first and self.undo_stack.count() == 1:
             self.undo_stack.clear()
 
+    def remove_nodes(self, nodes: Iterable[str], why: str) -> None:
+        """Let no search use these nodes any more: in any project, or in this one where the list cannot be written."""
+        self.removes_only_here = not self.curating.can_be_written
+        if self.removes_only_here:
+            self.noted.emit(texts.CURATION_ONLY_HERE)
+        super().remove_nodes(nodes, why)
+
     # Synthesis
 
     @property
@@ -135,6 +159,10 @@ class Authoring(Editing):
     def synthesise(self) -> None:
         """Find motion for the speech; from then on it follows each edit."""
         self._solving.follow()
+
+    def follow_later(self) -> None:
+        """Find motion for the speech once there is a database for it, and anew after each edit."""
+        self._solving.follow_later()
 
     @property
     def changed_slots(self) -> tuple[int, ...]:
@@ -164,7 +192,8 @@ class Authoring(Editing):
 
     def _on_solved(self, answer: SearchAnswer) -> None:
         after = self.undo_stack.undoText() or texts.SYNTHESISE
-        self.noted.emit(texts.SOLVED.format(milliseconds=1000 * answer.search_s, after=after))
+        solved = texts.SOLVED.format(milliseconds=1000 * answer.search_s, after=after)
+        self.noted.emit(" · ".join((solved, *answer.warnings)))
         if self.view.slot is None:
             self.select_a_vowel()
 

@@ -139,11 +139,11 @@ class Editing(Looking):
         if nodes:
             self.push(RemoveMotionNodes.on(self.document, nodes, Removal.now(why), self.removes_only_here))
 
-    def restore_nodes(self, nodes: Iterable[str]) -> None:
-        """Let the search use removed nodes again."""
+    def restore_nodes(self, nodes: Iterable[str], only_here: bool = False) -> None:
+        """Let the search use removed nodes again: in any project, or in this one only."""
         nodes = tuple(nodes)
         if nodes:
-            self.push(RestoreMotionNodes.on(self.document, nodes, self.removes_only_here))
+            self.push(RestoreMotionNodes.on(self.document, nodes, only_here or self.removes_only_here))
 
     # Output
 

@@ -41,7 +41,7 @@ def picture_of_window(path: Path, size: tuple[int, int] = PICTURE_SIZE) -> None:
     window = _window()
     window.resize(*size)
     window.show()
-    _start(window, None)
+    _show_demo(window)
     troubles: list[str] = []
     window.authoring.failed.connect(lambda sentence, remedy: troubles.append(f"{sentence} {remedy}".strip()))
     loop = QEventLoop()
@@ -109,19 +109,31 @@ def _window():
 
 
 def _start(window, project_or_audio: Path | None) -> None:
-    """Open the demo, and what was asked for, once the window is on screen."""
+    """Open what was asked for, or what was open last, once the window is on screen; the first time, the demo."""
     from PySide6.QtCore import QTimer
 
-    from app.window import DEMO_START
+    from core.document.project_file import SUFFIX
 
     def begin() -> None:
-        window.authoring.open_database()
-        if project_or_audio is None:
-            window.authoring.open_demo_sentence(DEMO_START)
-        else:
+        is_project = project_or_audio is not None and project_or_audio.suffix.lower() == SUFFIX
+        wants_file = project_or_audio is not None and not is_project
+        if wants_file:
+            window.keeper.new()
+            window.authoring.open_database()
             window.open_file(project_or_audio)
+        elif window.keeper.start(project_or_audio):
+            _show_demo(window)
 
+    window.keeper.began_empty.connect(lambda: _show_demo(window))
     QTimer.singleShot(0, begin)
+
+
+def _show_demo(window) -> None:
+    """Animate a demo sentence in whatever project is open, if any."""
+    from app.window import DEMO_START
+
+    window.authoring.open_database()
+    window.authoring.open_demo_sentence(DEMO_START)
 
 
 def _tell_unexpected(window) -> None:

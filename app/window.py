@@ -13,7 +13,7 @@ from app.actions import Actions, ButtonKeys, frame_rate_options
 from app.authoring import Authoring
 from app.icons import icon
 from app.loading import SpeechRequest, face_beside_markers
-from app.panels.commands import CommandPalette
+from app.panels.commands import Choosable, Chooser, commands
 from app.panels.control import WIDTH_PX, ControlPanel
 from app.panels.isomap import IsomapPane
 from app.panels.message_bar import MessageBar
@@ -23,10 +23,14 @@ from app.panels.status import StatusLine
 from app.panels.timeline.bar import TimelinePane
 from app.panels.timeline.timeline import Timeline
 from app.panels.video import VideoPane
+from app.project_keeper import ProjectKeeper
+from app.project_menu import ProjectMenu
 from app.settings import last_folder, remember_folder, window_settings
+from app.versions import Versions
 from core.document.change import Change
 from core.document.document import FaceChoice
 from core.document.parts import ReferenceVideo
+from core.document.project_file import SUFFIX
 from core.speech.emotion import EMOTIONS
 
 DEMO_START = "demo-neutral"
@@ -41,6 +45,8 @@ class MainWindow(QMainWindow):
     def __init__(self, authoring: Authoring) -> None:
         super().__init__()
         self.authoring = authoring
+        self.keeper = ProjectKeeper(authoring, self)
+        self.versions = Versions(self.keeper, self)
         self._settings = window_settings()
         self.setWindowTitle(texts.APPLICATION)
         self.setWindowIcon(icon("workstation"))
@@ -57,7 +63,7 @@ class MainWindow(QMainWindow):
         self._button_keys = ButtonKeys(self)
         QApplication.instance().installEventFilter(self._button_keys)
         self.actions = Actions(self)
-        self.commands = CommandPalette(self)
+        self.chooser = Chooser(self)
         self._make_menus()
         self._join()
         self._restore_layout()
@@ -109,11 +115,14 @@ class MainWindow(QMainWindow):
     def _make_menus(self) -> None:
         a, authoring, add = self.actions, self.authoring, self.actions.add
         file = a.menu(texts.MENU_FILE)
+        self.project_menu = ProjectMenu(self, a, file, self.keeper, self.versions)
         add(file, "speech", texts.OPEN_SPEECH, "Ctrl+O", self.ask_speech)
+        add(file, "captured", texts.OPEN_CAPTURED, "", self.ask_captured)
         add(file, "transcript", texts.OPEN_TRANSCRIPT, "Ctrl+T", self.ask_transcript)
         add(file, "emotions", texts.OPEN_EMOTIONS, "", self.ask_emotions)
         add(file, "face", texts.OPEN_FACE, "", self.ask_face)
         add(file, "database", texts.OPEN_DATABASE, "Ctrl+D", self.ask_database)
+        add(file, "demo_database", texts.OPEN_DEMO_DATABASE, "", authoring.open_database)
         file.addSeparator()
         add(file, "save_film", texts.SAVE_FILM, "Ctrl+E", self.ask_save_film)
         file.addSeparator()
@@ -180,7 +189,13 @@ class MainWindow(QMainWindow):
         a.add_choice(view, texts.MENU_THEME, texts.THEMES, chosen, self.on_theme)
 
         help_menu = a.menu(texts.MENU_HELP)
-        add(help_menu, "commands", texts.ACTION_COMMANDS, "Ctrl+K", self.commands.open)
+        add(
+            help_menu,
+            "commands",
+            texts.ACTION_COMMANDS,
+            "Ctrl+K",
+            lambda: self.chooser.open(texts.COMMANDS_HINT, commands(self)),
+        )
         add(help_menu, "about", texts.ACTION_ABOUT, "", self.about)
 
     def _join(self) -> None:
@@ -198,6 +213,7 @@ class MainWindow(QMainWindow):
         self.video.save_button.clicked.connect(self.ask_save_film)
         self.video.reference_asked.connect(self.ask_reference)
         authoring.document.changed.connect(self.on_document_changed)
+        self.keeper.opened.connect(self._show_title)
         self._enable_save()
 
     # Asking for files
@@ -214,6 +230,21 @@ class MainWindow(QMainWindow):
         path = self._ask_file("speech", texts.OPEN_SPEECH, texts.FILTER_SOUND)
         if path is not None:
             self.open_file(path)
+
+    def choose_command(self) -> None:
+        """Show everything that can be done now, to be searched by typing."""
+        self.chooser.open(texts.COMMANDS_HINT, commands(self))
+
+    def ask_captured(self) -> None:
+        """Choose a sentence that was captured, to compare what is synthesised with it."""
+
+        def choose(names: dict[str, str]) -> None:
+            self.chooser.open(texts.CAPTURED_HINT, [
+                Choosable(f"{text}   ({name})", lambda name=name: self.authoring.open_captured(name))
+                for name, text in names.items()
+            ])  # fmt: skip
+
+        self.authoring.list_captured(choose)
 
     def ask_transcript(self) -> None:
         """Choose a transcript for the sound."""
@@ -261,9 +292,11 @@ class MainWindow(QMainWindow):
             self.authoring.film.save(path)
 
     def open_file(self, path: Path) -> None:
-        """Open whatever ``path`` is: speech, a motion database or a face."""
+        """Open whatever ``path`` is: a project, speech, a motion database or a face."""
         suffix = path.suffix.lower()
-        if suffix in _DATABASE_SUFFIXES:
+        if suffix == SUFFIX:
+            self.keeper.open(path)
+        elif suffix in _DATABASE_SUFFIXES:
             self.authoring.open_database(path)
         elif suffix in _FACE_SUFFIXES:
             self._open_face(path)
@@ -284,9 +317,12 @@ class MainWindow(QMainWindow):
     def on_document_changed(self, change: Change, _origin: object) -> None:
         """Say in the title what is being worked on."""
         if change & Change.ALIGNMENT:
-            speech = self.authoring.document.speech
-            name = "" if speech is None or speech.audio.path is None else f"{Path(speech.audio.path).name} · "
-            self.setWindowTitle(name + texts.APPLICATION)
+            self._show_title()
+
+    def _show_title(self) -> None:
+        speech = self.authoring.document.speech
+        sound = "" if speech is None or speech.audio.path is None else Path(speech.audio.path).name
+        self.setWindowTitle(" · ".join(part for part in (self.keeper.name, sound, texts.APPLICATION) if part))
 
     def on_frame_rate(self, name: str) -> None:
         """Take another output rate."""
@@ -348,11 +384,14 @@ class MainWindow(QMainWindow):
         if event.type() == QEvent.Type.StatusTip:
             self.status.hint(event.tip())
             return True
+        if event.type() == QEvent.Type.WindowActivate:
+            self.authoring.curating.refresh()  # another window may have removed motion nodes
         return super().event(event)
 
     def closeEvent(self, event) -> None:
         """Remember the layout and stop everything."""
         self._save_layout()
+        self.keeper.close()
         self.authoring.shut_down()
         for pane in (self.motion, self.preview):
             pane.face_view.release()
