@@ -26,7 +26,7 @@ from core.speech.text_file import read_text
 from core.speech.transcript import Transcript, WordUtterance
 from core.speech.transcript_files import read_transcript
 
-GRID_UNIT_S = 1 / 25_000
+GRID_UNITS_PER_S = 25_000
 _NO_WORD = ("sil", "sp")
 
 
@@ -88,7 +88,9 @@ def read_word_times(path: Path) -> list[WordUtterance]:
         if len(columns) != 3 or not (columns[0].isdecimal() and columns[1].isdecimal()):
             raise UserFacingError(f"'{path}', line {number}: '{line[:40]}' is not 'start end word' in 1/25000 s.")
         if columns[2] not in _NO_WORD:
-            words.append(WordUtterance(columns[2], int(columns[0]) * GRID_UNIT_S, int(columns[1]) * GRID_UNIT_S))
+            words.append(
+                WordUtterance(columns[2], int(columns[0]) / GRID_UNITS_PER_S, int(columns[1]) / GRID_UNITS_PER_S)
+            )
     return words
 
 
