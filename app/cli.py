@@ -7,12 +7,32 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from typer.core import TyperGroup
 
 from app.terminal import clear_failures, end_on_signals, note, print_json, progress_bar, show_log
 from core.errors import UserFacingError
 
+
+class _OpensFiles(TyperGroup):
+    """Takes ``efase PROJECT.efase`` (or a sound file) for ``efase open PROJECT.efase``."""
+
+    def resolve_command(self, ctx, args):
+        """See `click.Group.resolve_command`."""
+        if args and args[0] not in self.commands and (Path(args[0]).suffix.lower() == ".efase" or _is_file(args[0])):
+            args = ["open", *args]
+        return super().resolve_command(ctx, args)
+
+
+def _is_file(text: str) -> bool:
+    try:
+        return Path(text).is_file()
+    except (OSError, ValueError):  # too long for a name, or holding a zero
+        return False
+
+
 app = typer.Typer(
-    name="efase", help="Author expressive speech animation from captured facial motion.", add_completion=False,
+    cls=_OpensFiles, name="efase", help="Author expressive speech animation from captured facial motion.",
+    add_completion=False,
     pretty_exceptions_enable=False, rich_markup_mode=None, context_settings={"help_option_names": ["-h", "--help"]},
 )  # fmt: skip
 
@@ -42,7 +62,18 @@ def window(
         from app.main import run_window
 
         raise typer.Exit(run_window())
-    end_on_signals()
+    if context.invoked_subcommand != "open":  # a window ends by itself
+        end_on_signals()
+
+
+@app.command("open", hidden=True)
+def open_file(file: Annotated[Path, typer.Argument(help="A project (.efase), or a sound file.")]) -> None:
+    """Open the workstation with a project; `efase PROJECT.efase` does the same."""
+    from app.main import run_window
+
+    if not file.is_file():
+        raise UserFacingError(f"There is no file '{file}'.")
+    raise typer.Exit(run_window(file))
 
 
 @app.command()
@@ -209,6 +240,30 @@ def evaluate(
         print(as_table(answer))
         if report is not None:
             print(report / PAGE)
+
+
+@app.command("export")
+def export_project(
+    project: Annotated[Path, typer.Argument(help="A project (.efase).")],
+    output: Annotated[list[Path], typer.Option("--output", "-o", help=".avi, .mp4, .c3d or .csv; repeat for more.")],
+    db: Annotated[Path | None, typer.Option("--db", help="Motion database, instead of the project's own.")] = None,
+    size: Annotated[str, typer.Option(help="Picture size.")] = "800x600",
+    style: Annotated[str | None, typer.Option(help="face, shaded, wireframe or markers.")] = None,
+    json: Json = False,
+) -> None:
+    """Write films or markers of a project, with the same motion as in the window."""
+    from app.export import video_size
+    from app.project_export import ExportJob, run
+
+    job = ExportJob(project, tuple(output), db, video_size(size), style)
+    with progress_bar("export") as progress:
+        answer = run(job, progress)
+    _warn(answer["warnings"])
+    if json:
+        print_json(answer)
+    else:
+        for path in answer["outputs"]:
+            print(path)
 
 
 @bench.command("search")

@@ -1,0 +1,83 @@
+"""`efase export`: the motion of a project to files, without the window, and the same motion as in it."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from app.export import VIDEO_SUFFIXES, VideoSettings, check_outputs, export, rounded_seconds
+from app.loading import open_motion_database
+from app.pictures import FaceRig
+from app.project_jobs import database_differences, find_database
+from app.synthesis import phoneme_rows
+from core.document.document import Document
+from core.document.project_file import read_project
+from core.errors import UserFacingError
+from core.face.default_face import FaceUnavailable
+from core.media.video import FRAME_RATES
+from core.progress import SILENT, Progress
+from core.search.engine import SearchEngine
+
+
+@dataclass(frozen=True)
+class ExportJob:
+    """Everything that `efase export` was told.
+
+    database : instead of the one that the project names
+    size, style : of the pictures; style None is ``face``, or ``markers`` for a project without a face
+    """
+
+    project: Path
+    outputs: tuple[Path, ...]
+    database: Path | None = None
+    size: tuple[int, int] = (800, 600)
+    style: str | None = None
+
+
+def run(job: ExportJob, progress: Progress = SILENT) -> dict[str, object]:
+    """Do the job and return the object of ``--json``; raises `UserFacingError` before anything is half-written."""
+    check_outputs(list(job.outputs))
+    content, audio = read_project(job.project)
+    if audio is None:
+        raise UserFacingError(f"'{job.project}' has no speech yet.", "Choose speech in the window first.")
+    if job.database is not None:
+        opened = open_motion_database(job.database, progress.part(0.0, 0.2))
+    elif content.database is None:
+        raise UserFacingError(f"'{job.project}' names no motion database.", "Name one with --db.")
+    else:
+        try:
+            opened = find_database((content.database, job.project), progress.part(0.0, 0.2))
+        except UserFacingError as error:
+            raise UserFacingError(error.message, "Name it with --db.") from error
+    document = Document()
+    document.load(content.state(audio, None))
+    document.take_database(opened.database, opened.removals)
+    engine = SearchEngine(opened.database, opened.engine.kernels, content.weights)
+    answer = engine.synthesise(document.speech_input(), progress.part(0.2, 0.5))
+
+    began = time.perf_counter()
+    warnings = [sentence for sentence in (database_differences(content, opened), *opened.trouble[:1]) if sentence]
+    warnings += answer.warnings
+    output = content.output
+    style = job.style or ("markers" if content.face is None else "face")
+    video = VideoSettings(FRAME_RATES[output.frame_rate], *job.size, style, output.start_frame,
+                          output.head_moves, output.head_moves)  # fmt: skip
+    rig = None
+    if style != "markers" and any(path.suffix.lower() in VIDEO_SUFFIXES for path in job.outputs):
+        face = document.face or Document().face
+        marker_file = None if face.marker_file is None else Path(face.marker_file)
+        try:
+            rig = FaceRig.of(face.name, opened.database.markers, marker_file, progress.part(0.5, 0.55))
+        except FaceUnavailable as error:
+            warnings.append(str(error))
+            video = replace(video, style="markers")
+    for i, path in enumerate(job.outputs):
+        stage = progress.part(0.55 + 0.45 * i / len(job.outputs), 0.55 + 0.45 * (i + 1) / len(job.outputs))
+        export(answer.motion, audio, rig, path, video, stage, content.transcript)
+    return {
+        "phonemes": phoneme_rows(content.transcript, answer, opened.database.nodes),
+        "cost": answer.path.cost, "optimal": answer.path.is_optimal, "text": content.text,
+        "seconds": {"search": rounded_seconds(answer.search_s), "render": rounded_seconds(time.perf_counter() - began)},
+        "warnings": warnings, "outputs": [str(path) for path in job.outputs],
+    }  # fmt: skip
