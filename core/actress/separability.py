@@ -10,9 +10,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from core.actress.corpus import actress_marker_set, comparison_sentences, record, recordings, tuning_sentences
-from core.motion.normalise import normalise
+from core.motion.head_space import in_head_space
 from core.motion.recording import Recording
-from core.motion.resample import fill_gaps
 from core.speech.emotion import EMOTION_INDEX, EMOTIONS
 
 FRAME_STEP = 6
@@ -23,10 +22,7 @@ N_COMPONENTS = 25
 def head_space(recording: Recording) -> np.ndarray:
     """Return the kept markers of a recording less their rest, head motion taken out; (n_frames, n_kept, 3), mm."""
     markers = actress_marker_set()
-    columns = [recording.marker_names.index(name) for name in markers.names]
-    filled, _, _ = fill_gaps(recording.positions[:, columns].astype(float), round(0.1 * recording.rate_hz))
-    face, _ = normalise(filled, markers.rest, markers.group("rigid"), int(markers.group("origin")[0]))
-    return face - markers.rest
+    return in_head_space(recording, markers, with_scale=False).face - markers.rest
 
 
 def emotion_accuracies(seen: Sequence[Recording], unseen: Sequence[Recording]) -> dict[str, float]:
