@@ -65,7 +65,7 @@ class OpenedDatabase:
 
 
 @dataclass(frozen=True)
-class DemoSentence:
+class KnownSentence:
     """Bundled speech and the emotion that it is spoken in."""
 
     speech: Speech
@@ -92,7 +92,7 @@ def open_motion_database(path: Path | None, progress: Progress) -> OpenedDatabas
     return OpenedDatabase(database, SearchEngine(database, kernels), backend, removals, trouble)
 
 
-def load_demo_sentence(name: str, _progress: Progress) -> DemoSentence:
+def load_demo_sentence(name: str, _progress: Progress) -> KnownSentence:
     """Load a bundled sentence by name."""
     from core.actress.corpus import demo_sentences, transcript_of
     from core.media.audio import load_audio
@@ -100,7 +100,23 @@ def load_demo_sentence(name: str, _progress: Progress) -> DemoSentence:
     spoken = next(s for s in demo_sentences() if s.sentence == name)
     speech = Speech(load_audio(spoken.audio), transcript_of(spoken), spoken.text)
     speech.audio.digest  # noqa: B018  computed here, off the main thread
-    return DemoSentence(speech, spoken.emotion)
+    return KnownSentence(speech, spoken.emotion)
+
+
+def list_captured_sentences(database: MotionDatabase, _progress: Progress) -> dict[str, str]:
+    """Return all sentences that a database has a capture of, name to what is said."""
+    from core.motion.capture import captured_names
+
+    return captured_names(database)
+
+
+def load_captured_sentence(request: tuple[MotionDatabase, str], _progress: Progress) -> KnownSentence:
+    """Load the speech of a captured sentence."""
+    from core.motion.capture import captured_speech
+
+    sound, transcript, text, emotion = captured_speech(*request)
+    sound.digest  # noqa: B018  computed here, off the main thread
+    return KnownSentence(Speech(sound, transcript, text), emotion)
 
 
 def read_speech(request: SpeechRequest, progress: Progress) -> AlignedSpeech:

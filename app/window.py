@@ -189,13 +189,7 @@ class MainWindow(QMainWindow):
         a.add_choice(view, texts.MENU_THEME, texts.THEMES, chosen, self.on_theme)
 
         help_menu = a.menu(texts.MENU_HELP)
-        add(
-            help_menu,
-            "commands",
-            texts.ACTION_COMMANDS,
-            "Ctrl+K",
-            lambda: self.chooser.open(texts.COMMANDS_HINT, commands(self)),
-        )
+        add(help_menu, "commands", texts.ACTION_COMMANDS, "Ctrl+K", self.choose_command)
         add(help_menu, "about", texts.ACTION_ABOUT, "", self.about)
 
     def _join(self) -> None:

@@ -1,30 +1,41 @@
-"""All commands in one list that can be searched."""
+"""Lists that can be searched: all commands, or whatever else there is too much of for a menu."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QFrame, QLineEdit, QListWidget, QListWidgetItem, QMainWindow, QMenu, QVBoxLayout
 
-from app import texts
 from app.theme import STEP
 
-_SIZE_PX = (460, 360)
-_ACTION = Qt.ItemDataRole.UserRole
+_SIZE_PX = (520, 380)
+_DONE = Qt.ItemDataRole.UserRole
+_MOST_SHOWN = 400
 
 
-class CommandPalette(QFrame):
-    """Type a few letters of a command, Return does it, Escape leaves."""
+@dataclass(frozen=True)
+class Choosable:
+    """One line of the list; ``keys`` is its shortcut, ``done`` what choosing it does."""
+
+    title: str
+    done: Callable[[], None]
+    keys: str = ""
+
+
+class Chooser(QFrame):
+    """Type a few letters of what is meant, Return takes it, Escape leaves."""
 
     def __init__(self, window: QMainWindow) -> None:
         super().__init__(window, Qt.WindowType.Popup)
         self._window = window
-        self.setProperty("role", "palette")
+        self._choosable: list[Choosable] = []
+        self.setProperty("role", "chooser")
         column = QVBoxLayout(self)
         column.setContentsMargins(STEP, STEP, STEP, STEP)
-        self.line = QLineEdit(placeholderText=texts.COMMANDS_HINT)
+        self.line = QLineEdit()
         self.list = QListWidget()
         self.list.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         column.addWidget(self.line)
@@ -34,56 +45,59 @@ class CommandPalette(QFrame):
         self.list.itemClicked.connect(lambda _: self._do())
         self.resize(*_SIZE_PX)
 
-    def open(self) -> None:
-        """Show every command that can be done now."""
-        self._commands = [(title, action) for title, action in _commands(self._window) if action.isEnabled()]
+    def open(self, hint: str, choosable: Iterable[Choosable]) -> None:
+        """Show a list; ``hint`` says what is chosen."""
+        self._choosable = list(choosable)
+        self.line.setPlaceholderText(hint)
         self.line.clear()
         self._fill("")
-        corner = self._window.mapToGlobal(QPoint((self._window.width() - self.width()) // 2, 5 * STEP))
-        self.move(corner)
+        self.move(self._window.mapToGlobal(QPoint((self._window.width() - self.width()) // 2, 5 * STEP)))
         self.show()
         self.line.setFocus()
 
     def _fill(self, wanted: str) -> None:
         self.list.clear()
         words = wanted.lower().split()
-        for title, action in self._commands:
-            if all(word in title.lower() for word in words):
-                keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
-                item = QListWidgetItem(f"{title}\t{keys}" if keys else title)
-                item.setData(_ACTION, action)
-                self.list.addItem(item)
+        fitting = (each for each in self._choosable if all(word in each.title.lower() for word in words))
+        for each, _ in zip(fitting, range(_MOST_SHOWN)):
+            item = QListWidgetItem(f"{each.title}    {each.keys}" if each.keys else each.title)
+            item.setData(_DONE, each.done)
+            self.list.addItem(item)
         self.list.setCurrentRow(0)
 
     def _do(self) -> None:
         item = self.list.currentItem()
         self.hide()
         if item is not None:
-            item.data(_ACTION).trigger()
+            item.data(_DONE)()
 
     def keyPressEvent(self, event) -> None:
         """Up and down walk the list while one types."""
-        row = self.list.currentRow() + {Qt.Key.Key_Down: 1, Qt.Key.Key_Up: -1}.get(event.key(), 0)
-        if row != self.list.currentRow():
-            self.list.setCurrentRow(min(max(row, 0), self.list.count() - 1))
+        step = {Qt.Key.Key_Down: 1, Qt.Key.Key_Up: -1}.get(event.key())
+        if step is not None:
+            self.list.setCurrentRow(min(max(self.list.currentRow() + step, 0), self.list.count() - 1))
         else:
             super().keyPressEvent(event)
 
 
-def _commands(window: QMainWindow) -> Iterable[tuple[str, QAction]]:
-    """Yield all actions of the menu bar, each with the way to it: ``Motion › Play or pause``."""
+def commands(window: QMainWindow) -> Iterable[Choosable]:
+    """Yield everything in the menus that can be done now, each with the way to it: ``Motion › Play or pause``."""
     for top in window.menuBar().actions():
         if top.menu() is not None:
             yield from _commands_of(top.menu(), _plain(top.text()))
 
 
-def _commands_of(menu: QMenu, way: str) -> Iterable[tuple[str, QAction]]:
+def _commands_of(menu: QMenu, way: str) -> Iterable[Choosable]:
     for action in menu.actions():
         title = f"{way} › {_plain(action.text())}"
         if action.menu() is not None:
             yield from _commands_of(action.menu(), title)
-        elif not action.isSeparator():
-            yield title, action
+        elif not action.isSeparator() and action.isEnabled():
+            yield Choosable(title, action.trigger, _keys(action))
+
+
+def _keys(action: QAction) -> str:
+    return action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
 
 
 def _plain(text: str) -> str:

@@ -22,6 +22,8 @@ _DEGREES_PER_PX = 0.4
 _ZOOM_PER_STEP = 1.15
 _LIP_COLOUR = (0.93, 0.66, 0.50)
 _MARKER_COLOUR = (0.80, 0.82, 0.85)
+_CAPTURED_COLOUR = (0.42, 0.66, 0.98)
+_TRAIL_COLOUR = (0.89, 0.68, 0.33)
 _STEP_ANGLE = 120.0  # eighths of a degree in one notch of a wheel
 
 
@@ -40,11 +42,14 @@ class FaceView(QOpenGLWidget):
         self._rig: FaceRig | None = None
         self._displacements: np.ndarray | None = None
         self._besides: dict[str, object] = {}
+        self._captured: np.ndarray | None = None
+        self._trails: np.ndarray | None = None
+        self._ghost_shape = (0, 0, 0)
         self._style = Style.TEXTURED
         self._front: dict[bool, Camera] = {}
         self._camera: dict[bool, Camera] = {}
         self._drag_from: QPointF | None = None
-        self._stale = {"face": True, "markers": True, "pose": True}
+        self._stale = {"face": True, "markers": True, "pose": True, "ghosts": True}
 
     # What is shown
 
@@ -74,6 +79,15 @@ class FaceView(QOpenGLWidget):
         """
         self._displacements, self._besides = displacements, besides or {}
         self._renew("pose")
+
+    def show_beside(self, captured: np.ndarray | None, trails: np.ndarray | None) -> None:
+        """Show with the markers what was captured, and where some of them come from.
+
+        captured : displacements, shape (n_markers, 3), mm, or None
+        trails : displaced positions of some markers in the frames before, shape (n_trails, n_steps, 3), mm, or None
+        """
+        self._captured, self._trails = captured, trails
+        self._renew("ghosts")
 
     @property
     def shows_mesh(self) -> bool:
@@ -131,6 +145,9 @@ class FaceView(QOpenGLWidget):
             colours[self._markers.group("lips")] = _LIP_COLOUR
             renderer.set_markers(self._markers.rest, colours, marker_links(self._markers))
             self._stale["markers"] = False
+        if self._stale["ghosts"] and self._markers is not None:
+            self._upload_ghosts(renderer)
+            self._stale["ghosts"] = False
         if self._stale["pose"] and self._markers is not None:
             displacements = self._displacements
             if displacements is None:
@@ -140,6 +157,22 @@ class FaceView(QOpenGLWidget):
             else:
                 renderer.markers.set_positions(self._markers.rest + displacements)
             self._stale["pose"] = False
+
+    def _upload_ghosts(self, renderer: FaceRenderer) -> None:
+        trails = np.empty((0, 1, 3)) if self._trails is None else self._trails
+        captured = np.empty((0, 3)) if self._captured is None else self._markers.rest + self._captured
+        n_captured, (n_trails, n_steps, _) = len(captured), trails.shape
+        points = np.concatenate([captured, trails.reshape(-1, 3)])
+        colours = np.concatenate([np.tile(_CAPTURED_COLOUR, (n_captured, 1)),
+                                  np.tile(_TRAIL_COLOUR, (n_trails * n_steps, 1))])  # fmt: skip
+        ends = n_captured + np.arange(n_trails * n_steps).reshape(n_trails, n_steps)
+        links = np.stack([ends[:, :-1], ends[:, 1:]], axis=-1).reshape(-1, 2)
+        shape = n_captured, n_trails, n_steps
+        if shape == self._ghost_shape:
+            renderer.ghosts.set_positions(points)
+        else:
+            renderer.ghosts.set_markers(points, colours, links)
+            self._ghost_shape = shape
 
     def release(self) -> None:
         """Free the GL objects, while the context is still there."""
@@ -158,6 +191,7 @@ class FaceView(QOpenGLWidget):
         self._ctx = moderngl.create_context(require=330)
         self._renderer = FaceRenderer(self._ctx)
         self._stale = dict.fromkeys(self._stale, True)
+        self._ghost_shape = (0, 0, 0)
 
     def paintGL(self) -> None:
         """Draw the pose."""

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+import numpy as np
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QSplitter, QToolButton
+
 from app import texts
 from app.authoring import Authoring
 from app.panels.face_view import FaceView
+from app.panels.marker_plot import MarkerPlot
 from app.panels.pane import Choice, Pane
 from app.panels.transport import Transport
+from app.theme import STEP
 from core.document.change import Change
+from core.motion.capture import capture_of
+from core.motion.database import MotionDatabase
+from core.progress import Progress
 from core.synthesis.marker_motion import MarkerMotion
 from gpu.gl.face import Style
+
+_TRAILED = ("mouth_corner_left", "mouth_corner_right", "upper_lip", "lower_lip", "chin")
+_TRAIL_S, _TRAIL_STEPS = 0.35, 24
 
 
 class MotionPane(Pane):
@@ -17,8 +29,21 @@ class MotionPane(Pane):
 
     def __init__(self, authoring: Authoring) -> None:
         self.face_view = FaceView()
-        super().__init__(texts.MOTION, self.face_view, texts.WAITING_DATABASE)
+        self.plot = MarkerPlot()
+        self.plot.hide()
+        both = QSplitter(Qt.Orientation.Vertical, childrenCollapsible=False, handleWidth=1)
+        both.addWidget(self.face_view)
+        both.addWidget(self.plot)
+        both.setStretchFactor(0, 1)
+        super().__init__(texts.MOTION, both, texts.WAITING_DATABASE)
         self._authoring = authoring
+        self.captured: MarkerMotion | None = None
+        self.plot_button = self._toggle(texts.PLOT, texts.PLOT_TIP, self.plot.setVisible)
+        self.trails_button = self._toggle(texts.TRAILS, texts.TRAILS_TIP, self._show_now)
+        self.captured_button = self._toggle(texts.PLOT_CAPTURED, texts.CAPTURED_TIP, self._show_now)
+        for button in (self.plot_button, self.trails_button, self.captured_button):
+            self.header.addWidget(button)
+        self.header.addSpacing(STEP)
         self.style = Choice([
             (Style.MARKERS.value, texts.MARKERS, texts.MARKERS_TIP),
             (Style.WIREFRAME.value, texts.WIREFRAME, texts.WIREFRAME_TIP),
@@ -40,7 +65,14 @@ class MotionPane(Pane):
         authoring.jobs.ended.connect(self._say_what_is_next)
         authoring.view.playhead_moved.connect(self.on_playhead_moved)
         authoring.document.changed.connect(self.on_document_changed)
-        self.on_document_changed(Change.NODES | Change.ALIGNMENT | Change.PATH, None)
+        self.plot.time_asked.connect(authoring.seek)
+        self.on_document_changed(Change.NODES | Change.SPEECH | Change.ALIGNMENT | Change.PATH, None)
+
+    def _toggle(self, text: str, tip: str, done) -> QToolButton:
+        button = QToolButton(text=text, toolTip=tip, checkable=True)
+        button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        button.toggled.connect(done)
+        return button
 
     @property
     def motion(self) -> MarkerMotion | None:
@@ -62,7 +94,10 @@ class MotionPane(Pane):
             self.face_view.set_markers(None if document.database is None else document.database.markers)
         if change & Change.ALIGNMENT:
             self.transport.set_duration(0.0 if document.speech is None else document.speech.transcript.duration_s)
+        if change & (Change.SPEECH | Change.NODES):
+            self._find_capture()
         if change & (Change.PATH | Change.ALIGNMENT | Change.NODES):
+            self.plot.show_motion(self.motion, self.captured)
             if self.motion is None:
                 self._say_what_is_next()
             else:
@@ -75,14 +110,51 @@ class MotionPane(Pane):
         for key in (Style.WIREFRAME.value, Style.SHADED.value, Style.TEXTURED.value):
             self.style.button(key).setEnabled(self._authoring.rig is not None)
 
+    def _find_capture(self) -> None:
+        """Look for how the actor herself said it; not every sentence was captured."""
+        document = self._authoring.document
+        self._show_capture(None)
+        if document.database is not None and document.speech is not None:
+            transcript = document.speech.transcript
+            text = document.speech.text or " ".join(word.word for word in transcript.words)
+            request = (document.database, text, transcript.duration_s)
+            self._authoring.jobs.start("capture", "", request, _capture, self._show_capture)
+
+    def _show_capture(self, captured: MarkerMotion | None) -> None:
+        self.captured = captured
+        self.captured_button.setEnabled(captured is not None)
+        self.captured_button.setToolTip(texts.CAPTURED_TIP if captured is not None else texts.CAPTURED_NONE_TIP)
+        self.plot.show_motion(self.motion, captured)
+        self._show_now()
+
+    def _show_now(self, *_: object) -> None:
+        self.on_playhead_moved(self._authoring.view.playhead_s)
+
     def on_playhead_moved(self, time_s: float) -> None:
         """Show the frame at the playhead."""
+        self.plot.show_time(time_s)
         film = self._authoring.film
         self.transport.show_time(time_s, film.fps, film.fps_name)
         motion = self.motion
         if motion is not None:
             besides = self._authoring.tracks.at(self.frame)
             self.face_view.show_pose(motion.positions[self.frame] - motion.markers.rest, besides)
+            self.face_view.show_beside(self._captured_at(time_s), self._trails())
+
+    def _captured_at(self, time_s: float) -> np.ndarray | None:
+        if self.captured is None or not self.captured_button.isChecked():
+            return None
+        frame = min(round(time_s * self.captured.rate_hz), len(self.captured.positions) - 1)
+        return self.captured.positions[frame] - self.captured.markers.rest
+
+    def _trails(self) -> np.ndarray | None:
+        """Return where the markers around the mouth come from, shape (n_trails, n_steps, 3), mm."""
+        motion = self.motion
+        if not self.trails_button.isChecked():
+            return None
+        rows = [row for name in _TRAILED if (row := motion.markers.landmark(name)) is not None]
+        before = self.frame - np.linspace(_TRAIL_S * motion.rate_hz, 0, _TRAIL_STEPS).round().astype(int)
+        return motion.positions[np.maximum(before, 0)][:, rows].transpose(1, 0, 2)
 
     def _say_what_is_next(self, *_: object) -> None:
         if self.motion is not None:
@@ -99,3 +171,8 @@ class MotionPane(Pane):
         else:
             text = texts.MOTION_EMPTY_READY if authoring.can_synthesise else texts.MOTION_EMPTY
         self.show_empty(text)
+
+
+def _capture(request: tuple[MotionDatabase, str, float], _progress: Progress) -> MarkerMotion | None:
+    database, text, duration_s = request
+    return capture_of(database, text, duration_s)
