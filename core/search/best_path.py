@@ -76,15 +76,12 @@ def find_path(
 
 
 def observed(request: SearchRequest, slot: int, nodes: NodeTable, weights: SearchWeights) -> np.ndarray:
-    """OC of one slot for every node, float64, shape (n_nodes,): table 2, `core.search.context`, and surcharges."""
+    """OC of one slot for every node, float64, shape (n_nodes,): table 2 and `core.search.context`."""
     cost = observation_costs(request.phonemes[slot : slot + 1], nodes, weights)[0]
     if weights.context_before or weights.context_after:
         cost += context_costs(request.phonemes, slot, nodes, weights)
     if weights.duration and request.lengths is not None and request.phonemes[slot] != SILENCE:
         cost += duration_costs(request.lengths[slot], nodes, weights)
-    if request.surcharges and slot not in request.pins:
-        rows = np.fromiter(request.surcharges.keys(), int)
-        cost[rows] += weights.pnt * np.fromiter(request.surcharges.values(), float)
     return cost
 
 

@@ -21,7 +21,6 @@ class SearchRequest:
     pins : slot to row of the motion node that is tied to it (the motion-node constraints, hard)
     removed : rows of nodes that the search must not use
     lengths : frames, at the database's rate, that each slot lasts, shape (n_slots,); None when it does not matter
-    surcharges : row of a motion node to what its use costs on top, in PNT, in any slot that it is not pinned to
     start_s : when each slot begins, so that messages can say it
     """
 
@@ -30,7 +29,6 @@ class SearchRequest:
     pins: Mapping[int, int] = field(default_factory=dict)
     removed: frozenset[int] = frozenset()
     lengths: np.ndarray | None = None
-    surcharges: Mapping[int, float] = field(default_factory=dict)
     start_s: tuple[float, ...] | None = None
 
     @property

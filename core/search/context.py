@@ -32,8 +32,8 @@ def context_around(phonemes: np.ndarray, slot: int) -> np.ndarray:
 def context_costs(phonemes: np.ndarray, slot: int, nodes: NodeTable, weights: SearchWeights) -> np.ndarray:
     """Cost of phones around a node that differ from those around the slot.
 
-    ``PNT Σ_d decay^(d-1) (before · mismatch_-d + after · mismatch_+d)``, d up to `CONTEXT_REACH`; a mismatch is 0 for the
-    phone itself, α4 within its viseme class and 1 otherwise. Silence has no context.
+    ``PNT Σ_d decay^(d-1) (before · mismatch_-d + after · mismatch_+d)``, d up to `CONTEXT_REACH`; a mismatch is 0 for
+    the phone itself, α4 within its viseme class and 1 otherwise. Silence has no context.
 
     returns : float64, shape (n_nodes,)
     """

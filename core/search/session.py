@@ -68,6 +68,7 @@ class SearchSession:
         return (
             np.array_equal(before.phonemes, request.phonemes)
             and np.array_equal(before.emotions, request.emotions)
+            and np.array_equal(before.lengths, request.lengths)
             and dict(before.pins) == dict(request.pins)
             and before.removed <= request.removed
             and not request.removed.intersection(self.path.nodes.tolist())

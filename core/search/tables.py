@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from core.motion.node import CONTEXT_REACH
 from core.progress import SILENT, Progress
 from core.search.best_path import MotionPath, priced, slot_costs
 from core.search.compute import SearchKernels
@@ -124,9 +125,15 @@ def _only_least(costs: np.ndarray) -> int:
 
 
 def _same_slot(one: SearchRequest, other: SearchRequest, p: int) -> bool:
+    around = slice(max(0, p - CONTEXT_REACH), p + CONTEXT_REACH + 1)  # the phones around count in a slot's own cost
     return (
-        one.phonemes[p] == other.phonemes[p]
+        np.array_equal(one.phonemes[around], other.phonemes[around])
+        and _length(one, p) == _length(other, p)
         and np.array_equal(one.emotions[p], other.emotions[p])
         and one.pins.get(p) == other.pins.get(p)
         and (p in one.pins or one.removed == other.removed)
     )
+
+
+def _length(request: SearchRequest, p: int) -> int | None:
+    return None if request.lengths is None else int(request.lengths[p])

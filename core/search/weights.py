@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 
 import numpy as np
 
@@ -45,6 +45,11 @@ class SearchWeights:
             value = getattr(self, field.name)
             if not np.isfinite(value) or value < 0:
                 raise UserFacingError(f"The search weight {field.name} is {value}; it must be 0 or more.")
+
+    @property
+    def as_printed(self) -> SearchWeights:
+        """The same without what the paper does not have."""
+        return replace(self, context_before=0.0, context_after=0.0, duration=0.0)
 
     def as_dict(self) -> dict[str, float]:
         """Return plain numbers by name."""
