@@ -76,6 +76,7 @@ def settings_folder(tmp_path, monkeypatch):
     folder = tmp_path / "config"
     monkeypatch.setenv("EFASE_CONFIG_DIR", str(folder))
     monkeypatch.setenv("EFASE_CACHE_DIR", str(tmp_path / "cache"))
+    monkeypatch.setenv("EFASE_DATA_DIR", str(tmp_path / "data"))
     return folder
 
 
