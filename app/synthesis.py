@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from app.demo import demo_database
-from app.export import VIDEO_SUFFIXES, VideoSettings, check_outputs, export, rounded_seconds
+from app.export import VideoSettings, check_outputs, export, is_drawn, rounded_seconds
 from app.pictures import FaceRig
 from app.speech import emotion_modifiers, load_speech
 from core.errors import UserFacingError
@@ -65,12 +65,11 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
 
     began = time.perf_counter()
     warnings = list(speech.transcript.warnings)
-    if job.backend == "auto" and kernels.report.backend == "numpy" and not kernels.lost:
+    if job.backend == "auto" and kernels.report.backend == "numpy" and not kernels.report.lost:
         warnings.append(backend_sentence)
-    warnings += [kernels.lost] if kernels.lost else []
     warnings += answer.warnings
     rig, video = None, job.video
-    if video.style != "markers" and any(path.suffix.lower() in VIDEO_SUFFIXES for path in job.outputs):
+    if video.style != "markers" and is_drawn(job.outputs):
         try:
             rig = FaceRig.of(job.face, database.markers, job.marker_file, progress.part(0.5, 0.55))
         except FaceUnavailable as error:

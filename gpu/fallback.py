@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import logging
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TypeVar
 
 import numpy as np
@@ -18,20 +19,14 @@ Answer = TypeVar("Answer")
 class FallbackKernels:
     """`SearchKernels` that go on with numpy when their device fails.
 
-    All backends give the same bits, so a search that loses its device half-way ends with the same answer.
-
-    lost : one sentence about the device that failed; empty as long as none did
+    All backends give the same bits, so a search that loses its device half-way ends with the same answer. ``report``
+    then names numpy, and in ``lost`` the device that failed.
     """
 
     def __init__(self, kernels: SearchKernels) -> None:
         self._kernels = kernels
         self._transition: np.ndarray | None = None
-        self.lost = ""
-
-    @property
-    def report(self) -> DeviceReport:
-        """What runs now."""
-        return self._kernels.report
+        self.report: DeviceReport = kernels.report
 
     def prepare(self, transition: np.ndarray) -> None:
         """See `SearchKernels.prepare`."""
@@ -59,8 +54,8 @@ class FallbackKernels:
         return work(self._kernels)
 
     def _go_on_with_numpy(self, error: DeviceFailed) -> None:
-        self.lost = f"{error} The search goes on with numpy."
-        log.warning(self.lost)
+        self.report = replace(NumpyKernels.report, lost=f"{error} The search goes on with numpy.")
+        log.warning(self.report.lost)
         with contextlib.suppress(DeviceFailed):
             self._kernels.release()
         self._kernels = NumpyKernels()

@@ -17,13 +17,17 @@ from core.errors import UserFacingError
 
 @dataclass(frozen=True)
 class DeviceReport:
-    """What really runs: backend, device, API and driver with their versions, and whether it is software."""
+    """What really runs: backend, device, API and driver with their versions, and whether it is software.
+
+    lost : one sentence about the device that failed before, in whose place this one goes on; empty when none did
+    """
 
     backend: str
     device: str
     api: str
     software: bool
     driver: str = ""
+    lost: str = ""
 
     def as_dict(self) -> dict[str, object]:
         """Return it for ``--json``."""

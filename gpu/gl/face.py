@@ -161,9 +161,11 @@ class FaceRenderer:
         style: Style = Style.SHADED,
         *,
         show_markers: bool = False,
+        background: tuple[float, float, float] | None = None,
     ) -> None:
         """Clear the framebuffer and draw one picture that fills it; alpha is 1 everywhere.
 
+        background : red, green, blue, 0..1, one colour instead of the studio's; None: the studio
         Without a face, wireframe and shaded show the markers as well. With the markers come the ghosts: `ghosts`, what
         they are compared with.
         """
@@ -173,8 +175,9 @@ class FaceRenderer:
         framebuffer.use()
         ctx.viewport = (0, 0, width, height)
         ctx.enable_only(moderngl.NOTHING)
-        framebuffer.clear(0.07, 0.075, 0.085, 1.0, depth=1.0)
-        self._backdrop_array.render(moderngl.TRIANGLES, vertices=3)
+        framebuffer.clear(*(background or (0.07, 0.075, 0.085)), 1.0, depth=1.0)
+        if background is None:
+            self._backdrop_array.render(moderngl.TRIANGLES, vertices=3)
         has_mesh = self._face is not None and style is not Style.MARKERS
         if has_mesh:
             self._draw_mesh(view, projection, (width, height), style)

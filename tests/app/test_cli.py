@@ -91,7 +91,7 @@ def test_synth_writes_film_and_markers_and_tells_the_path(efase, demo, tmp_path)
         demo.nodes.row(row["node"])
     assert set(answer["seconds"]) == {"align", "search", "synthesis", "render"}
     assert "opencl" in answer["backend"] or "numpy" in answer["backend"]
-    assert set(answer["device"]) == {"backend", "device", "api", "driver", "software", "method"}
+    assert set(answer["device"]) == {"backend", "device", "api", "driver", "software", "lost", "method"}
 
     duration = soundfile.info(sentence.audio).duration
     positions, names, rate = read_motion(outputs[1])

@@ -66,10 +66,12 @@ def test_a_search_that_loses_its_device_ends_with_the_same_path(problem, caplog,
     assert answer.nodes.tolist() == expected.nodes.tolist() and answer.cost == expected.cost
     lost = n_good < 9  # one preparation and eight steps
     assert kernels.report.backend == ("numpy" if lost else "opencl")
-    assert kernels.lost == (
+    assert kernels.report.lost == (
         "The OpenCL device a card failed (OUT_OF_RESOURCES). The search goes on with numpy." if lost else ""
     )
-    assert [record.message for record in caplog.records if record.name == "gpu"] == ([kernels.lost] if lost else [])
+    assert [record.message for record in caplog.records if record.name == "gpu"] == (
+        [kernels.report.lost] if lost else []
+    )
 
 
 @pytest.mark.parametrize("n_good", [0, 1, 3, 7])
@@ -93,7 +95,7 @@ def test_a_kernel_of_opencl_that_fails_is_a_lost_device(problem):
     reference = NumpyKernels()
     reference.prepare(costs.matrix)
     assert np.array_equal(find_path(request, costs, kernels).nodes, find_path(request, costs, reference).nodes)
-    assert kernels.lost.startswith(f"The OpenCL device {opencl.report.device} failed (")
+    assert kernels.report.lost.startswith(f"The OpenCL device {opencl.report.device} failed (")
     kernels.release()
 
 
@@ -108,4 +110,4 @@ def test_too_little_memory_at_the_device_is_no_end(monkeypatch):
     kernels = FallbackKernels(opencl)
     kernels.prepare(matrix)
     assert np.array_equal(kernels.min_plus(np.arange(600.0)), np.ones(600))
-    assert "offers 1 MiB in one piece, and the transition matrix needs 1 MiB" in kernels.lost
+    assert "offers 1 MiB in one piece, and the transition matrix needs 1 MiB" in kernels.report.lost
