@@ -12,13 +12,22 @@ from core.motion.database import MotionDatabase
 from core.search.compute import SearchKernels
 from core.search.engine import SearchEngine
 from core.synthesis.engine import MotionEngine
+from core.synthesis.options import PAPER, SynthesisOptions
 
 EngineFactory = Callable[[MotionDatabase, SearchKernels], MotionEngine]
+
+
+def paper_search(database: MotionDatabase, kernels: SearchKernels) -> SearchEngine:
+    """Make the search as Deng and Neumann (2008) print it, with the weights of the database."""
+    return SearchEngine(database, kernels, database.weights.as_printed, options=PAPER)
+
 
 ENGINES: Mapping[str, EngineFactory] = {
     "static": lambda database, kernels: StaticFace(database),
     "phone-means": lambda database, kernels: PhoneMeans(database),
-    "random": lambda database, kernels: RandomNodes(SearchEngine(database, kernels)),
+    "random": lambda database, kernels: RandomNodes(paper_search(database, kernels)),
+    "search-paper": paper_search,
+    "search-single": lambda database, kernels: SearchEngine(database, kernels, options=SynthesisOptions().single),
     "search": SearchEngine,
 }
 
