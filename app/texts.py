@@ -351,11 +351,12 @@ RHO_TIP = "ρ of the splats (equation 3): how brightly each frame shines; {rho:.
 FILTER_TIP = "Show frames captured in {emotion}"
 PCA_MAP = "PCA"
 PCA_TIP = "Show the linear map (PCA) beside the Isomap, and how well each keeps neighbours"
-PRESERVATION = "neighbours kept: Isomap {isomap:.0%}, PCA {pca:.0%}"
+ISOMAP_MAP = "Isomap"
+PRESERVATION = "{map} · keeps {figures.shared:.0%} of neighbours"
 PRESERVATION_TIP = (
-    "<qt>Of the 12 nearest captured frames, how many are among the 12 nearest on the map: Isomap {isomap.shared:.1%}, "
-    "PCA {pca.shared:.1%}.<br>Trustworthiness: {isomap.trustworthiness:.3f}, {pca.trustworthiness:.3f}.<br>"
-    "Continuity: {isomap.continuity:.3f}, {pca.continuity:.3f}.</qt>"
+    ".\nOf the 12 nearest captured frames, among the 12 nearest on the map: Isomap {isomap.shared:.1%}, "
+    "PCA {pca.shared:.1%}.\nTrustworthiness: {isomap.trustworthiness:.3f}, {pca.trustworthiness:.3f}. "
+    "Continuity: {isomap.continuity:.3f}, {pca.continuity:.3f}."
 )
 COMPARING_MAPS = "Comparing the maps"
 EMOTION_COLOURS = {"paper": "The paper's colours", "okabe-ito": "Okabe–Ito, safe for colour-blind eyes"}
@@ -373,7 +374,6 @@ REMOVE_MANY = "{count} nodes"
 REMOVE_REASONS = ("contaminated", "wrong label", "bad acting", "duplicate")
 REMOVE_REASON_HINT = "reason"
 REMOVE_TIP = "Let no search use them (Enter); the Removed list brings them back"
-CANCEL = "Cancel"
 REMOVE_NOTHING = "Select what to remove first: click a dot, or draw a box (Shift+drag) or a lasso (Ctrl+drag)."
 REMOVED = "Removed"
 REMOVED_TIP = "Motion nodes that no search uses; double click or Enter restores one"
@@ -387,7 +387,7 @@ COST_STAYED = "{what}: cost stays {after:.2f}"
 
 # Suspicion
 SUSPECTS = "Suspects"
-SUSPECTS_TIP = "Motion nodes that look contaminated, worst first; N steps to the next and plays it"
+SUSPECTS_TIP = "Motion nodes that look contaminated, worst first; N steps to the next and plays it (F8 anywhere)"
 LOOKING_FOR_FAULTS = "Looking for capture faults"
 SUSPECTS_WAIT = "Looking for capture faults…"
 SUSPECTS_EMPTY = "Nothing looks contaminated."

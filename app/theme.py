@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from PySide6.QtGui import QColor, QFont, QPalette
@@ -50,6 +50,12 @@ _chosen = DARK
 
 # pyqtgraph's symbols, so that colour is never the only sign
 EMOTION_SYMBOLS = {"neutral": "o", "happiness": "t1", "anger": "s", "sadness": "t"}
+
+
+def set_emotion_colours(colours: dict[str, str]) -> None:
+    """Paint the emotions otherwise from now on; see `app.emotion_colours`, which tells the panels."""
+    global _chosen
+    _chosen = replace(_chosen, emotion=colours)
 
 
 def theme() -> Theme:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from app import texts
-from core.manifold.isomap import PhonemeMap
-from core.manifold.picking import Pick, pick
 from core.motion.database import MotionDatabase
 from core.motion.node import MotionNode, NodeTable
+
+if TYPE_CHECKING:
+    from app.panels.isomap.shown_map import ShownMap
 
 
 def node_of_frame(nodes: NodeTable, frame: int) -> int:
@@ -27,6 +29,7 @@ class MapPick:
     node : row of the motion node, of the nearest frame where several mix
     inside : False where the place is outside the map's triangles and its nearest frame stands in
     in_use : whether this is the frame that the path uses in the selected slot
+    price : what forcing the node into the selected slot adds to the cost, in units of PNT; None when not known
     """
 
     at: np.ndarray | None
@@ -35,25 +38,31 @@ class MapPick:
     node: int
     inside: bool = True
     in_use: bool = False
+    price: float | None = None
 
     @classmethod
-    def under(cls, database: MotionDatabase, phoneme_map: PhonemeMap, point: np.ndarray) -> MapPick:
-        """Pick ``point``, map units."""
-        picked: Pick = pick(phoneme_map, point)
-        node = node_of_frame(database.nodes, int(phoneme_map.frames[picked.nearest]))
-        return cls(np.asarray(point, float), picked.frames, picked.weights, node, picked.inside)
+    def under(cls, shown: ShownMap, point: np.ndarray) -> MapPick:
+        """Pick ``point``, map units: a mix of three captured frames, or the nearest one outside of all triangles."""
+        picked = shown.picker.pick(point)
+        return cls(np.asarray(point, float), picked.frames, picked.weights, int(shown.node[picked.nearest]),
+                   picked.inside)  # fmt: skip
 
     @classmethod
-    def used(cls, database: MotionDatabase, phone: str, node: int, share: float) -> MapPick:
-        """Return the frame of ``node`` at relative time ``share`` (0..1), as it is used, on the map of ``phone``."""
+    def captured(cls, shown: ShownMap, place: int) -> MapPick:
+        """Return the captured frame at a place of the map."""
+        return cls(shown.points[place], shown.map.frames[[place]], np.ones(1), int(shown.node[place]))
+
+    @classmethod
+    def of_node(cls, database: MotionDatabase, node: int, share: float, shown: ShownMap | None = None) -> MapPick:
+        """Return the frame of ``node`` at relative time ``share`` (0..1), interpolated as the synthesis does."""
         start, stop = int(database.nodes.start[node]), int(database.nodes.stop[node])
         place = min(max(share, 0.0), 1.0) * (stop - start - 1)
         low = int(place)
         high = min(low + 1, stop - start - 1)
         weights = np.array([1.0 - (place - low), place - low])
-        walked = trajectory(database, phone, node)
+        walked = np.zeros((0, 2)) if shown is None else shown.trajectory(node)
         at = weights @ walked[[low, high]] if len(walked) else None
-        return cls(at, np.array([start + low, start + high]), weights, node, True, True)
+        return cls(at, np.array([start + low, start + high]), weights, node)
 
     def blend(self, frames: np.ndarray) -> np.ndarray:
         """Return the coefficients of the frame, shape (n_dims,)."""
@@ -71,15 +80,8 @@ class MapPick:
             node=node.name, emotion=node.emotion, before=before, phone=node.phone, after=after,
             milliseconds=1000 * node.n_frames / database.rate_hz,
         )  # fmt: skip
+        if self.price is not None:
+            said += texts.PREVIEW_PRICE.format(price=self.price) if np.isfinite(self.price) else texts.PREVIEW_NO_PRICE
         text = database.sentence(node.sentence).text
         sign = texts.PREVIEW_USED if self.in_use else "" if self.inside else texts.PREVIEW_OUTSIDE
         return f"{sign}{said} · “{text}”" if text else f"{sign}{said}"
-
-
-def trajectory(database: MotionDatabase, phone: str, node: int) -> np.ndarray:
-    """Return the path of a node over the map of ``phone``, shape (n_frames, 2); empty when it is not on that map."""
-    nodes, phoneme_map = database.nodes, database.maps[phone]
-    if nodes[node].phone != phone:
-        return np.zeros((0, 2))
-    first = int(np.searchsorted(phoneme_map.frames, nodes.start[node]))
-    return phoneme_map.embedding[first : first + int(nodes.n_frames[node])].astype(float)
