@@ -39,6 +39,9 @@ app = typer.Typer(
 bench = typer.Typer(help="Measure, each figure beside a reference run in the same process.", rich_markup_mode=None)
 app.add_typer(bench, name="bench")
 
+OUTPUTS = ".avi, .mp4, .png (numbered), .c3d, .csv or .TextGrid; repeat for more."
+Background = Annotated[str | None, typer.Option(help="Colour behind the face, #rrggbb.")]
+Span = Annotated[str | None, typer.Option("--range", metavar="START-END", help="Only this part, in seconds.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 Database = Annotated[Path | None, typer.Option("--db", help="Motion database; the demo's when absent.")]
 Lexicon = Annotated[Path | None, typer.Option(help="Pronunciations of names and coined words, `word phone phone …`.")]
@@ -178,7 +181,7 @@ def align(
 @app.command()
 def synth(
     audio: Annotated[Path, typer.Argument(help="WAV, FLAC or OGG.")],
-    output: Annotated[list[Path], typer.Option("--output", "-o", help=".avi, .mp4, .c3d or .csv; repeat for more.")],
+    output: Annotated[list[Path], typer.Option("--output", "-o", help=OUTPUTS)],
     text: Annotated[str | None, typer.Option(help="What is said, or a text file with it.")] = None,
     phones: Annotated[Path | None, typer.Option(help="TextGrid, label or `start end phone` file instead.")] = None,
     db: Database = None,
@@ -196,18 +199,22 @@ def synth(
     texture: Annotated[Path | None, typer.Option(help="PNG or JPEG for a mesh with texture coordinates.")] = None,
     head: Annotated[bool, typer.Option("--head/--no-head", help="Let the head move, subtly.")] = True,
     gaze: Annotated[bool, typer.Option("--gaze/--no-gaze", help="Let the eyes wander.")] = True,
+    background: Background = None,
+    span: Span = None,
     lexicon: Lexicon = None,
     strict: Strict = False,
     json: Json = False,
 ) -> None:
     """Animate speech: find the best path through the database and write films or markers."""
-    from app.export import VideoSettings, frame_rate, video_size
+    from app.export import VideoSettings, background_colour, frame_rate, span_of_time, video_size
     from app.synthesis import SynthesisJob, run
 
     job = SynthesisJob(
         audio=audio, outputs=tuple(output), text=text, phones=phones, database=db, emotion=emotion, emotions=emotions,
         engine=engine, face=face, marker_file=markers, backend=backend, pins=tuple(pin or ()),
-        video=VideoSettings(frame_rate(fps), *video_size(size), style, start_frame, head, gaze, texture),
+        video=VideoSettings(frame_rate(fps), *video_size(size), style, start_frame, head, gaze, texture,
+                            None if background is None else background_colour(background),
+                            None if span is None else span_of_time(span)),
         lexicon=lexicon, strict=strict,
     )  # fmt: skip
     with progress_bar("synth") as progress:
@@ -245,17 +252,21 @@ def evaluate(
 @app.command("export")
 def export_project(
     project: Annotated[Path, typer.Argument(help="A project (.efase).")],
-    output: Annotated[list[Path], typer.Option("--output", "-o", help=".avi, .mp4, .c3d or .csv; repeat for more.")],
+    output: Annotated[list[Path], typer.Option("--output", "-o", help=OUTPUTS)],
     db: Annotated[Path | None, typer.Option("--db", help="Motion database, instead of the project's own.")] = None,
     size: Annotated[str, typer.Option(help="Picture size.")] = "800x600",
     style: Annotated[str | None, typer.Option(help="face, shaded, wireframe or markers.")] = None,
+    background: Background = None,
+    span: Span = None,
     json: Json = False,
 ) -> None:
     """Write films or markers of a project, with the same motion as in the window."""
-    from app.export import video_size
+    from app.export import background_colour, span_of_time, video_size
     from app.project_export import ExportJob, run
 
-    job = ExportJob(project, tuple(output), db, video_size(size), style)
+    job = ExportJob(project, tuple(output), db, video_size(size), style,
+                    None if background is None else background_colour(background),
+                    None if span is None else span_of_time(span))  # fmt: skip
     with progress_bar("export") as progress:
         answer = run(job, progress)
     _warn(answer["warnings"])

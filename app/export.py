@@ -1,16 +1,19 @@
-"""From a synthesis to files: video, or markers for other programs."""
+"""From a synthesis to files: video, still pictures, markers for other programs, or its transcript."""
 
 from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 
 from app.pictures import STYLES, FaceRig, frames
 from core.errors import UserFacingError
 from core.media.audio import Audio
+from core.media.image_sequence import SUFFIX as IMAGE_SUFFIX
+from core.media.image_sequence import numbered, write_images
 from core.media.picture import read_picture
 from core.media.swap_in import check_target
 from core.media.video import FRAME_RATES, n_video_frames, write_video
@@ -22,6 +25,10 @@ from core.synthesis.pose_tracks import PoseTracks
 
 VIDEO_SUFFIXES = (".avi", ".mp4")
 MARKER_SUFFIXES = (".csv", ".c3d")
+TRANSCRIPT_SUFFIX = ".textgrid"
+DRAWN_SUFFIXES = (*VIDEO_SUFFIXES, IMAGE_SUFFIX)
+SUFFIXES = (*VIDEO_SUFFIXES, IMAGE_SUFFIX, *MARKER_SUFFIXES, ".TextGrid")
+_COLOUR = re.compile("#[0-9a-fA-F]{6}")
 _PIXELS = re.compile("[0-9]{2,4}")
 
 
@@ -33,6 +40,8 @@ class VideoSettings:
     start_frame : number of the first frame, written as timecode
     head, gaze : whether head and eyes move by tracks of their own, made from the speech
     texture : a picture for the face's texture coordinates (style ``face``), or None
+    background : red, green, blue, 0..1 as on screen, behind the face; None: the studio's
+    span_s : start and end of what is written, seconds of the speech; None: all of it
     """
 
     fps: Fraction = FRAME_RATES["30"]
@@ -43,6 +52,8 @@ class VideoSettings:
     head: bool = True
     gaze: bool = True
     texture: Path | None = None
+    background: tuple[float, float, float] | None = None
+    span_s: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         if self.style not in STYLES:
@@ -64,13 +75,37 @@ def video_size(text: str) -> tuple[int, int]:
     return int(width), int(height)
 
 
+def background_colour(text: str) -> tuple[float, float, float]:
+    """Return the colour that ``#rrggbb`` means; `UserFacingError` for anything else."""
+    if not _COLOUR.fullmatch(text):
+        raise UserFacingError(f"'{text}' is not a colour.", "Write it as #rrggbb, for instance #00ff00.")
+    return tuple(int(text[i : i + 2], 16) / 255 for i in (1, 3, 5))
+
+
+def span_of_time(text: str) -> tuple[float, float]:
+    """Return (start_s, end_s) of ``1.5-3``; `UserFacingError` unless it is a stretch of time."""
+    start, _, end = text.partition("-")
+    try:
+        span_s = float(start), float(end)
+    except ValueError:
+        span_s = math.nan, math.nan
+    if not 0.0 <= span_s[0] < span_s[1] < math.inf:
+        raise UserFacingError(f"'{text}' is not a stretch of time.", "Write it in seconds as START-END, as in 1.5-3.")
+    return span_s
+
+
+def is_drawn(paths: Iterable[Path]) -> bool:
+    """Whether any of the outputs shows a face."""
+    return any(path.suffix.lower() in DRAWN_SUFFIXES for path in paths)
+
+
 def check_outputs(paths: list[Path]) -> None:
     """Raise `UserFacingError` before any work when an output could not be written."""
     for path in paths:
-        if path.suffix.lower() not in VIDEO_SUFFIXES + MARKER_SUFFIXES:
-            known = ", ".join(VIDEO_SUFFIXES + MARKER_SUFFIXES)
-            raise UserFacingError(f"'{path}' has no suffix that can be written.", f"Known are {known}.")
-        check_target(path)
+        suffix = path.suffix.lower()
+        if suffix not in (*DRAWN_SUFFIXES, *MARKER_SUFFIXES, TRANSCRIPT_SUFFIX):
+            raise UserFacingError(f"'{path}' has no suffix that can be written.", f"Known are {', '.join(SUFFIXES)}.")
+        check_target(numbered(path, 0) if suffix == IMAGE_SUFFIX else path)
 
 
 def export(
@@ -84,28 +119,65 @@ def export(
 ) -> None:
     """Write ``motion`` with its sound to ``path``; the suffix says as what. Sampled at the video's frame rate.
 
-    transcript : what is said; in a video it moves the tongue and, if ``settings`` ask for it, head and gaze
+    transcript : what is said; in pictures it moves the tongue and, if ``settings`` ask for it, head and gaze
+    Raises `UserFacingError` for a span that lies outside the speech, and for a TextGrid of nothing said.
     """
-    n_frames = n_video_frames(audio.duration_s, settings.fps)
-    sampled = motion.at_rate(settings.fps, n_frames)
     suffix = path.suffix.lower()
-    if suffix in VIDEO_SUFFIXES:
-        tracks = None
-        if transcript is not None:
-            loudness_db = levels_db(audio.samples, audio.rate_hz)
-            tracks = PoseTracks.of(
-                transcript, float(settings.fps), n_frames, loudness_db, head=settings.head, gaze=settings.gaze
-            )
-        texture = None if settings.texture is None else read_picture(settings.texture)
-        size = (settings.width, settings.height)
-        pictures = frames(sampled, rig, settings.style, *size, tracks=tracks, texture=texture)
-        write_video(path, pictures, n_frames, settings.fps, audio, progress, settings.start_frame)
+    first, stop = _frame_span(settings, n_video_frames(audio.duration_s, settings.fps))
+    if suffix == TRANSCRIPT_SUFFIX:
+        _write_transcript(path, transcript, settings)
+    elif suffix in DRAWN_SUFFIXES:
+        _write_pictures(motion, audio, rig, path, settings, progress, transcript, first, stop)
     else:
         from core.motion.motion_files import write_c3d, write_markers_csv
 
         write = write_c3d if suffix == ".c3d" else write_markers_csv
-        write(path, sampled.positions, sampled.markers.names, float(settings.fps))
+        sampled = motion.at_rate(settings.fps, stop).positions[first:]
+        write(path, sampled, motion.markers.names, float(settings.fps))
     progress.step(1.0, f"{path.name} written")
+
+
+def _frame_span(settings: VideoSettings, n_frames: int) -> tuple[int, int]:
+    """First frame and the one after the last, of those that begin within the span."""
+    if settings.span_s is None:
+        return 0, n_frames
+    first, stop = (math.ceil(time_s * settings.fps - 1e-6) for time_s in settings.span_s)
+    if first >= min(stop, n_frames):
+        start_s, end_s = settings.span_s
+        raise UserFacingError(f"From {start_s:g} s to {end_s:g} s there is no frame of the speech.")
+    return first, min(stop, n_frames)
+
+
+def _write_pictures(
+    motion: MarkerMotion, audio: Audio, rig: FaceRig | None, path: Path, settings: VideoSettings, progress: Progress,
+    transcript: Transcript | None, first: int, stop: int,
+) -> None:  # fmt: skip
+    tracks = PoseTracks()
+    n_frames = n_video_frames(audio.duration_s, settings.fps)
+    if transcript is not None:
+        loudness_db = levels_db(audio.samples, audio.rate_hz)
+        tracks = PoseTracks.of(
+            transcript, float(settings.fps), n_frames, loudness_db, head=settings.head, gaze=settings.gaze
+        )
+    texture = None if settings.texture is None else read_picture(settings.texture)
+    sampled = motion.at_rate(settings.fps, n_frames)
+    pictures = frames(sampled, rig, settings.style, settings.width, settings.height, tracks=tracks, texture=texture,
+                      background=settings.background, span=(first, stop))  # fmt: skip
+    start_frame = settings.start_frame + first
+    if path.suffix.lower() == IMAGE_SUFFIX:
+        write_images(path, pictures, stop - first, progress, start_frame)
+        return
+    begin, end = (round(frame / settings.fps * audio.rate_hz) for frame in (first, stop))
+    heard = audio if settings.span_s is None else replace(audio, samples=audio.samples[begin:end])
+    write_video(path, pictures, stop - first, settings.fps, heard, progress, start_frame)
+
+
+def _write_transcript(path: Path, transcript: Transcript | None, settings: VideoSettings) -> None:
+    from core.speech.textgrid import write_textgrid
+
+    if transcript is None:
+        raise UserFacingError(f"There is no transcript to write to '{path}'.")
+    write_textgrid(transcript if settings.span_s is None else transcript.between(*settings.span_s), path)
 
 
 def rounded_seconds(seconds: float) -> float:

@@ -117,12 +117,16 @@ def frames(
     progress: Progress = SILENT,
     tracks: PoseTracks | None = None,
     texture: np.ndarray | None = None,
+    background: tuple[float, float, float] | None = None,
+    span: tuple[int, int] | None = None,
 ) -> Iterator[np.ndarray]:
     """Yield one picture a frame of ``motion``, uint8, shape (height, width, 3).
 
     style : one of `STYLES`; without a rig only markers can be drawn
     tracks : head, gaze and tongue at the motion's rate; None keeps them still
     texture : uint8, shape (h, w, 3), for the style ``face`` of a mesh with texture coordinates
+    background : red, green, blue, 0..1; None: the studio's
+    span : first frame and the one after the last; None: all
     Raises `UserFacingError` on a machine without GL.
     """
     from gpu.gl.camera import Camera, portrait_bounds
@@ -144,14 +148,14 @@ def frames(
             else:
                 rest = motion.markers.rest
                 camera = Camera.front(np.stack([rest.min(axis=0), rest.max(axis=0)]))
-            n_frames = len(motion.positions)
+            first, stop = span or (0, len(motion.positions))
             displacements = motion.displacements
-            for f in range(n_frames):
-                progress.step(f / n_frames, "drawing")
+            for f in range(first, stop):
+                progress.step((f - first) / (stop - first), "drawing")
                 if rig is not None and style != "markers":
                     renderer.set_positions(rig.pose(displacements[f], **tracks.at(f)))
                 else:
                     renderer.set_markers(motion.positions[f])
-                yield offscreen.frame(lambda target: renderer.draw(target, camera, shown))
+                yield offscreen.frame(lambda target: renderer.draw(target, camera, shown, background=background))
         finally:
             renderer.release()

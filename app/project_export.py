@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from app.export import VIDEO_SUFFIXES, VideoSettings, check_outputs, export, rounded_seconds
+from app.export import VideoSettings, check_outputs, export, is_drawn, rounded_seconds
 from app.loading import open_motion_database
 from app.pictures import FaceRig
 from app.project_jobs import database_differences, find_database
@@ -25,7 +25,8 @@ class ExportJob:
     """Everything that `efase export` was told.
 
     database : instead of the one that the project names
-    size, style : of the pictures; style None is ``face``, or ``markers`` for a project without a face
+    size, style, background, span_s : as in `app.export.VideoSettings`; without a style it is ``face``, or ``markers``
+        for a project without a face
     """
 
     project: Path
@@ -33,6 +34,8 @@ class ExportJob:
     database: Path | None = None
     size: tuple[int, int] = (800, 600)
     style: str | None = None
+    background: tuple[float, float, float] | None = None
+    span_s: tuple[float, float] | None = None
 
 
 def run(job: ExportJob, progress: Progress = SILENT) -> dict[str, object]:
@@ -62,9 +65,9 @@ def run(job: ExportJob, progress: Progress = SILENT) -> dict[str, object]:
     output = content.output
     style = job.style or ("markers" if content.face is None else "face")
     video = VideoSettings(FRAME_RATES[output.frame_rate], *job.size, style, output.start_frame,
-                          output.head_moves, output.head_moves)  # fmt: skip
+                          output.head_moves, output.head_moves, None, job.background, job.span_s)  # fmt: skip
     rig = None
-    if style != "markers" and any(path.suffix.lower() in VIDEO_SUFFIXES for path in job.outputs):
+    if style != "markers" and is_drawn(job.outputs):
         face = document.face or Document().face
         marker_file = None if face.marker_file is None else Path(face.marker_file)
         try:

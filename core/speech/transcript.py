@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from core.speech.phoneme import PAU
 
@@ -43,6 +43,18 @@ class Transcript:
     def phones(self) -> tuple[str, ...]:
         """The phone names, in order."""
         return tuple(utterance.phone for utterance in self.phonemes)
+
+    def between(self, start_s: float, end_s: float) -> Transcript:
+        """Return what is said from ``start_s`` to ``end_s``, on a time axis that begins at ``start_s``."""
+        end_s = min(end_s, self.duration_s)
+
+        def inside(said: Iterable) -> list:
+            cut = (
+                replace(u, start_s=max(u.start_s, start_s) - start_s, end_s=min(u.end_s, end_s) - start_s) for u in said
+            )
+            return [u for u in cut if u.end_s > u.start_s]
+
+        return Transcript.covering(inside(self.phonemes), inside(self.words), end_s - start_s, self.warnings)
 
     @classmethod
     def covering(
