@@ -166,7 +166,7 @@ FILTER_REFERENCE = "Films (*.avi *.mp4 *.mov *.mkv *.webm *.mpg *.mpeg);;All fil
 COMPOSE = "Compose"
 COMPOSE_TIP = "Compose the video of the motion on show"
 SAVE_AS = "Save as…"
-SAVE_AS_TIP = "Keep a copy of the composed video (Ctrl+E)"
+SAVE_AS_TIP = "Keep a copy of the composed video; Export (Ctrl+E) has more forms"
 ISOMAP_EMPTY = "Open a motion database to see its maps."
 PHONE_TIP = "Whose map to show; selecting an utterance in the timeline shows its own"
 PHONE_ITEM = "/{phone}/   {frames} frames"
@@ -319,6 +319,32 @@ cmu_us_slt_arctic (see resources/demo/LICENSES.md).</p>
 ModernGL, PyOpenCL, PyAV (FFmpeg), pocketsphinx and others, each under its own licence.</p>"""
 ABOUT_DEFAULT_FACE = "The default face is cut from MakeHuman data (CC0)."
 FRAME_RATE_ITEM = "{name} frames a second"
+EXPORT_TITLE = "Export"
+EXPORT = "Export"
+EXPORT_ACTION = "&Export…"
+EXPORTING = "Exporting {name}"
+EXPORT_NEEDS_MOTION = "There is no motion to export yet. Press Synthesise first."
+EXPORT_AS = "as"
+EXPORT_SIZE = "size"
+EXPORT_SHOWS = "showing"
+EXPORT_BACKGROUND = "background"
+EXPORT_RATE = "frame rate"
+EXPORT_SPAN = "part"
+EXPORT_TO = "to"
+EXPORT_KINDS = {
+    ".avi": "AVI video (Motion JPEG, PCM sound)", ".mp4": "MP4 video (H.264, AAC sound)",
+    ".png": "Numbered pictures (PNG)", ".c3d": "Markers, C3D", ".csv": "Markers, CSV",
+    ".TextGrid": "Transcript, Praat TextGrid",
+}  # fmt: skip
+EXPORT_STYLES = {"face": "the face", "shaded": "the face, shaded", "wireframe": "a wireframe", "markers": "markers"}
+BACKGROUND_STUDIO = "studio"
+BACKGROUND_TIP = "One colour behind the face, for keying; cancel the choice for the studio"
+SPAN_ALL = "all"
+SPAN_SELECTED = "selected"
+SPAN_FROM_TO = "from – to"
+SPAN_TIP = "Which part of the speech is written"
+BROWSE = "Browse…"
+FILTER_ANY = "All files (*)"
 SAVE_FILM = "Save video as…"
 THEME_NEXT_START = "The new theme dresses the window from the next start."
 SHOWING = "drawing the window"

@@ -152,6 +152,15 @@ def _style_sheet(t: Theme) -> str:
     QPlainTextEdit {{ background: {t.canvas}; border: 1px solid {t.line}; border-radius: 4px; padding: 4px;
         selection-background-color: {t.accent}; selection-color: {t.on_accent}; }}
     QPlainTextEdit:focus {{ border-color: {t.accent}; }}
+    QLineEdit, QDoubleSpinBox, QSpinBox {{ background: {t.canvas}; color: {t.text}; border: 1px solid {t.line};
+        border-radius: 4px; padding: 3px 6px; selection-background-color: {t.accent};
+        selection-color: {t.on_accent}; }}
+    QLineEdit:focus, QDoubleSpinBox:focus, QSpinBox:focus {{ border-color: {t.accent}; }}
+    QLineEdit:disabled, QDoubleSpinBox:disabled, QSpinBox:disabled {{ color: {t.dim}; }}
+    QListWidget {{ background: {t.canvas}; border: 1px solid {t.line}; border-radius: 4px; outline: none; }}
+    QListWidget::item {{ padding: 4px 8px; }}
+    QListWidget::item:selected {{ background: {t.line}; color: {t.text}; }}
+    QFrame[role="chooser"] {{ background: {t.raised}; border: 1px solid {t.line}; border-radius: 6px; }}
     QSlider::groove:horizontal {{ height: 2px; background: {t.line}; }}
     QSlider::sub-page:horizontal {{ background: {t.accent}; }}
     QSlider::handle:horizontal {{ background: {t.text}; width: 8px; height: 8px; margin: -3px 0; border-radius: 4px; }}

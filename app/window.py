@@ -15,6 +15,7 @@ from app.icons import icon
 from app.loading import SpeechRequest, face_beside_markers
 from app.panels.commands import Choosable, Chooser, commands
 from app.panels.control import WIDTH_PX, ControlPanel
+from app.panels.export_dialog import ExportDialog
 from app.panels.isomap import IsomapPane
 from app.panels.message_bar import MessageBar
 from app.panels.motion import MotionPane
@@ -64,6 +65,7 @@ class MainWindow(QMainWindow):
         QApplication.instance().installEventFilter(self._button_keys)
         self.actions = Actions(self)
         self.chooser = Chooser(self)
+        self.export_dialog = ExportDialog(authoring, self._settings, self)
         self._make_menus()
         self._join()
         self._restore_layout()
@@ -124,7 +126,8 @@ class MainWindow(QMainWindow):
         add(file, "database", texts.OPEN_DATABASE, "Ctrl+D", self.ask_database)
         add(file, "demo_database", texts.OPEN_DEMO_DATABASE, "", authoring.open_database)
         file.addSeparator()
-        add(file, "save_film", texts.SAVE_FILM, "Ctrl+E", self.ask_save_film)
+        add(file, "save_film", texts.SAVE_FILM, "", self.ask_save_film)
+        add(file, "export", texts.EXPORT_ACTION, "Ctrl+E", self.export_dialog.open_for)
         file.addSeparator()
         add(file, "quit", texts.ACTION_QUIT, "Ctrl+Q", self.close)
 
