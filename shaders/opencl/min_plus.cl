@@ -51,8 +51,8 @@ uint rows_of_stripe(uint n_nodes)
     return (share + ROWS - 1) / ROWS * ROWS;
 }
 
-// One work-item is a group that owns a stripe of rows and reads on through it: many short work-items would tear what
-// the processor fetches ahead, and leave a core idle at the end of a step.
+// One work-item is a group that owns a stripe of rows and reads on through it. The host sees to it that there are a few
+// groups a core: left to itself, PoCL puts hundreds of work-items into one group, and all of them on one core.
 __kernel void min_plus(__global const float *restrict DistanceMap,
                        __global const double *restrict PrevCostBufferMap,
                        __global double *restrict CostValueMap,
