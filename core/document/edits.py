@@ -54,7 +54,7 @@ class FieldEdit:
 
     def followed_by(self, later: FieldEdit) -> FieldEdit | None:
         """See `core.document.document.Edit`."""
-        if self.gesture is None or self.gesture != later.gesture or type(self) is not type(later):
+        if type(self) is not type(later) or self.gesture is None or self.gesture != later.gesture:
             return None
         before = {**later.before, **self.before}
         note = later.note or self.note

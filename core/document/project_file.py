@@ -274,13 +274,20 @@ def whole_states(connection: sqlite3.Connection) -> list[tuple[int, str]]:
     return sorted(found, reverse=True)
 
 
-def has_sound(connection: sqlite3.Connection, text: str) -> bool:
-    """Whether the sound that a state refers to is there and whole; a state that nobody would believe refers to none."""
+def sound_digest(text: str) -> str | None:
+    """Return which sound a state refers to; none for a state that nobody would believe."""
     try:
-        content = ProjectContent.from_json(text)
-        return content.sound is None or _sound_bytes(connection, content.sound.digest) is not None
+        sound = ProjectContent.from_json(text).sound
     except Unbelievable:
-        return True
+        return None
+    return None if sound is None else sound.digest
+
+
+def has_sound(connection: sqlite3.Connection, text: str) -> bool:
+    """Whether the sound that a state refers to, if it does, is there and whole."""
+    digest = sound_digest(text)
+    try:
+        return digest is None or _sound_bytes(connection, digest) is not None
     except sqlite3.DatabaseError:
         return False
 

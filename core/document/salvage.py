@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from core import sqlite_file
-from core.document.project_file import KIND, SOUNDS, beyond_repair, has_sound, whole_states, write_state
+from core.document.project_file import KIND, SOUNDS, beyond_repair, has_sound, sound_digest, whole_states, write_state
 from core.media.swap_in import swapped_in
 from core.sqlite_file import transaction
 
@@ -62,14 +62,17 @@ def _pad(path: Path) -> None:
 
 
 def _carry_over(source: sqlite3.Connection, target: sqlite3.Connection) -> bool:
-    """Copy sounds, versions and the newest state whose sound was saved; tell whether there was one."""
+    """Copy sounds, versions and the newest state whose sound is whole; tell whether there was one.
+
+    An older state without any sound is no substitute for one whose sound is lost.
+    """
     for table, n_columns in (*((name, 2) for name in SOUNDS), ("version", 3)):
         with contextlib.suppress(sqlite3.DatabaseError):
             marks = ", ".join("?" * n_columns)
             for row in source.execute(f"SELECT * FROM {table} NOT INDEXED"):
                 target.execute(f"INSERT OR IGNORE INTO {table} VALUES ({marks})", row)
-    for revision, text in whole_states(source):
-        if has_sound(target, text):
+    for i, (revision, text) in enumerate(whole_states(source)):
+        if has_sound(target, text) and (i == 0 or sound_digest(text) is not None):
             write_state(target, revision, text)
             return True
     return False

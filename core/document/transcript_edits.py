@@ -43,6 +43,8 @@ class _TranscriptEdit(FieldEdit):
         transcript = replace(
             speech.transcript, phonemes=tuple(phonemes), words=speech.transcript.words if words is None else words
         )
+        same = transcript == speech.transcript
+        changed = speech if same else Speech(speech.audio, transcript, speech.text)
         pins, locks = _moved(document.pins, moved_slot), _moved(document.locks, moved_slot)
         lost = len(document.pins) - len(pins), len(document.locks) - len(locks)
         parts = [f"{n} {what}{'s' * (n > 1)}" for n, what in zip(lost, ("pin", "lock")) if n]
@@ -50,7 +52,7 @@ class _TranscriptEdit(FieldEdit):
         change = Change.ALIGNMENT | (Change.CONSTRAINTS if pins != document.pins or locks != document.locks
                                      else Change(0))  # fmt: skip
         return cls.setting(document, label, change, gesture=gesture, note=note,
-                           speech=Speech(speech.audio, transcript, speech.text), pins=pins, locks=locks)  # fmt: skip
+                           speech=changed, pins=pins, locks=locks)  # fmt: skip
 
 
 def _moved(ties: Mapping[int, str], moved_slot: Callable[[int], int | None]) -> Mapping[int, str]:

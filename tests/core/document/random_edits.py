@@ -29,6 +29,7 @@ from core.document.transcript_edits import MergePhonemes, MovePhonemeBoundary, R
 from core.errors import UserFacingError
 from core.media.audio import Audio
 from core.motion.curation import Removal
+from core.search.weights import SearchWeights
 from core.speech.emotion import EMOTIONS
 from core.speech.emotion_painting import erased, painted
 from core.speech.phoneme import PHONEMES
@@ -73,6 +74,9 @@ def random_edit(document: Document, chance: random.Random) -> Edit | None:
         lambda: SetFace.on(document, chance.choice((None, FaceChoice("ben"), FaceChoice("a.obj", "a.csv")))),
         lambda: SetReferenceVideo.on(document, ReferenceVideo("actor.mp4", chance.uniform(-1, 1)), 3),
         lambda: SetOutput.on(document, replace(document.output, start_frame=chance.randrange(100))),
+        lambda: FieldEdit.setting(
+            document, "Weigh", Change.WEIGHTS, weights=chance.choice((None, SearchWeights(pnt=chance.uniform(1, 5e4))))
+        ),
         lambda: FieldEdit.setting(
             document, "Lock", Change.CONSTRAINTS, locks=MappingProxyType({**document.locks, slot: node})
         ),

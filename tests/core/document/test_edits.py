@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+import random
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from core.document.change import Change
-from core.document.document import Document, FaceChoice
-from core.document.edits import PinMotionNode, SetDatabase, SetEmotion, SetFace, SetSpeech
+from core.document.content import ProjectContent
+from core.document.curation_edits import RemoveMotionNodes, RestoreMotionNodes
+from core.document.document import Document
+from core.document.edits import LockSlots, PinMotionNode, SetDatabase, SetEmotion, SetFace, SetSpeech, UnlockSlots
+from core.document.parts import FaceChoice
 from core.document.view_state import ViewState
+from core.errors import UserFacingError
+from core.motion.curation import Removal
 from core.speech.emotion import EmotionModifier
 from core.speech.transcript import PhonemeUtterance, Transcript
+from tests.core.document.random_edits import random_edit
 
 ANGER = (EmotionModifier(0.0, 1.0, "anger"),)
 
@@ -36,7 +46,7 @@ def speech(*phones):
 
 
 def state(document):
-    names = ("database", "speech", "modifiers", "pins", "removed", "face")
+    names = ("database", "speech", "modifiers", "pins", "locks", "removed", "face")
     return {name: getattr(document, name) for name in names}
 
 
@@ -126,3 +136,98 @@ def test_the_playhead_stays_within_the_speech(document):
         view.move_playhead(asked_s)
         assert view.playhead_s == stands_s
         assert document.speech.transcript.phonemes[view.slot_at(stands_s)].end_s >= stands_s
+
+
+def everything(document):
+    return ProjectContent.of(document), dict(document.shared_removals)
+
+
+def walk(seed, n_steps):
+    """Do, undo and redo at random, as an undo stack does; each state is met again on the way back."""
+    chance, document = random.Random(seed), Document()
+    done, undone, states = [], [], [everything(document)]
+    for _ in range(n_steps):
+        if done and chance.random() < 0.3:
+            undone.append(done.pop())
+            document.revert(undone[-1])
+        elif undone and chance.random() < 0.4:
+            done.append(undone.pop())
+            document.apply(done[-1])
+        else:
+            edit = random_edit(document, chance)
+            if edit is None:
+                continue
+            before = edit.label, edit.followed_by(edit)
+            document.apply(edit)
+            assert (edit.label, edit.followed_by(edit) is None) == (before[0], before[1] is None)
+            merged = done[-1].followed_by(edit) if done and len(states) > len(done) else None
+            if merged is not None:
+                done[-1] = merged
+            else:
+                done.append(edit)
+            undone.clear()
+            del states[len(done) :]
+            states.append(everything(document))
+        assert everything(document) == states[len(done)]
+    end = everything(document)
+    for edit in reversed(done):
+        document.revert(edit)
+    assert everything(document) == states[0]
+    for edit in done:
+        document.apply(edit)
+    assert everything(document) == end
+
+
+@given(st.integers(0, 2**32 - 1))
+@settings(max_examples=40, deadline=None)
+def test_undo_and_redo_go_through_equal_documents(seed):
+    walk(seed, 60)
+
+
+@pytest.mark.prove
+@pytest.mark.parametrize("seed", range(10))
+def test_sequences_of_2000_edits_return_to_equal_documents(seed):
+    walk(seed, 2000)
+
+
+def test_an_undo_leaves_what_another_window_removed_meanwhile(document):
+    mine, theirs = Removal("me", "t", "spike"), Removal("they", "t", "drift")
+    edit = RemoveMotionNodes.on(document, ["s1:1", "s1:2"], mine)
+    document.apply(edit)
+    document.read_curation({**document.shared_removals, "s7:7": theirs})
+    document.revert(edit)
+    assert dict(document.shared_removals) == {"s7:7": theirs}
+    assert document.removed == {"s7:7"}
+
+
+def test_a_project_may_keep_a_node_that_the_list_removes_or_remove_one_by_itself(document):
+    why = Removal("me", "t", "spike")
+    document.read_curation({"s1:1": why, "s1:2": why})
+    document.apply(RestoreMotionNodes.on(document, ["s1:1"], only_here=True))
+    assert set(document.shared_removals) == {"s1:1", "s1:2"}
+    assert document.removed == {"s1:2"}
+    document.apply(RemoveMotionNodes.on(document, ["s4:4"], why, only_here=True))
+    assert document.removed == {"s1:2", "s4:4"}
+    document.apply(RestoreMotionNodes.on(document, ["s4:4", "s1:2"]))
+    assert document.removed == frozenset() and set(document.shared_removals) == {"s1:1"}
+
+
+def test_a_lock_keeps_what_is_in_use_and_no_pin_may_differ(document):
+    with pytest.raises(UserFacingError, match="no motion to lock"):
+        LockSlots.on(document, [1])
+    nodes = SimpleNamespace(name=lambda row: f"s9:{row}")
+    document.database = SimpleNamespace(nodes=nodes, maps={})
+    document.answer = SimpleNamespace(path=SimpleNamespace(nodes=[4, 5, 6]))
+    edit = LockSlots.on(document, [2, 1])
+    document.apply(edit)
+    assert edit.label == "Lock /m/ /iy/"
+    assert document.locks == {1: "s9:5", 2: "s9:6"}
+    with pytest.raises(UserFacingError, match="locked to the node s9:5"):
+        PinMotionNode.on(document, 1, "s1:1")
+    document.apply(UnlockSlots.on(document, [1]))
+    assert document.locks == {2: "s9:6"}
+
+
+def test_another_database_keeps_the_pins(document):
+    document.apply(SetDatabase.on(document, Database({})))
+    assert document.pins == {0: "s1:0"}
