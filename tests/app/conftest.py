@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+
 import numpy as np
 import pytest
 import soundfile
@@ -11,6 +13,7 @@ from core.motion.corpus import Corpus
 from core.motion.recording import Recording
 from core.speech.emotion import EMOTIONS
 from core.speech.transcript import PhonemeUtterance, Transcript, WordUtterance
+from gpu.choice import quickest
 
 PHONES = ("m", "aa", "iy", "w", "ah", "b")
 RATE_HZ = 60.0
@@ -71,12 +74,24 @@ def speech_path(tmp_path_factory):
     return folder / "hum.wav"
 
 
+@pytest.fixture(scope="session")
+def known_backends(tmp_path_factory):
+    """The file in which `auto` remembers, measured once for all tests."""
+    folder = tmp_path_factory.mktemp("backends")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("EFASE_CACHE_DIR", str(folder))
+        quickest()
+    return folder / "compute.json"
+
+
 @pytest.fixture
-def settings_folder(tmp_path, monkeypatch):
+def settings_folder(tmp_path, monkeypatch, known_backends):
     folder = tmp_path / "config"
     monkeypatch.setenv("EFASE_CONFIG_DIR", str(folder))
     monkeypatch.setenv("EFASE_CACHE_DIR", str(tmp_path / "cache"))
     monkeypatch.setenv("EFASE_DATA_DIR", str(tmp_path / "data"))
+    (tmp_path / "cache").mkdir()
+    shutil.copy(known_backends, tmp_path / "cache")
     return folder
 
 
