@@ -120,7 +120,7 @@ class TransitionTerms:
         return block
 
     def least_costs(self, targets: np.ndarray, sources: np.ndarray, weights: SearchWeights) -> np.ndarray:
-        """Return costs that TC of table 1 cannot fall below, cheaply: without DSC and the viseme penalty.
+        """Return costs that TC of table 1 cannot fall below, cheaply: without DSC.
 
         float64, shape (n_targets, n_sources)
         """
@@ -128,8 +128,10 @@ class TransitionTerms:
         root = np.sqrt(weights.alpha3)
         arriving = np.concatenate([self._first_pose[targets] * root, self._first_velocity[targets]], axis=1)
         leaving = np.concatenate([self._last_pose[sources] * root, self._last_velocity[sources]], axis=1)
-        bound = _squared_distances(arriving, leaving) * (1.0 - _PRODUCT_ROUNDING)
+        bound = _squared_distances(arriving, leaving)
+        bound += weights.pnt * (self._viseme[pre][:, None] != self._viseme[sources][None])
         bound[pre == NIL] = weights.alpha1 * weights.pnt
+        bound *= 1.0 - _PRODUCT_ROUNDING
         bound[pre[:, None] == sources[None]] = 0.0
         return bound
 

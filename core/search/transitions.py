@@ -110,3 +110,7 @@ class TransitionCosts:
         if self.is_held:
             return self.matrix[np.ix_(targets, sources)]
         return self.terms.costs(targets, sources, self.weights)
+
+    def least(self, targets: np.ndarray, sources: np.ndarray) -> np.ndarray:
+        """Return what `block` cannot fall below, without DSC and much sooner where nothing is held."""
+        return self.terms.least_costs(targets, sources, self.weights).astype(np.float32)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from core.search import relaxation
 from core.search.best_path import find_path
 from core.search.compute import NumpyKernels
 from core.search.constraints import SearchRequest
@@ -10,6 +11,7 @@ from core.search.relaxation import find_path_by_relaxation
 from core.search.terms import TransitionTerms, default_weights
 from core.search.transitions import TransitionCosts
 from core.search.weights import SearchWeights
+from core.speech.phoneme import PAU, PHONEME_INDEX
 
 
 def prepared(frames, nodes, **change):
@@ -29,23 +31,37 @@ def request_of(rng, n_nodes, n_slots):
     return SearchRequest(rng.integers(0, 44, n_slots), emotions, pins, removed)
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_equals_the_exhaustive_search(random_motion, seed):
+def costly(seed):
+    """Weights from worthless penalties, where everything has to become active, to overwhelming ones; some zero."""
+    scale = [0.0, 0.05, 1.0, 20.0][seed % 4]
+    change = {"alpha5": 5.0 * scale, "alpha6": 2.0 * scale}
+    if seed % 3 == 0:
+        change[["alpha1", "alpha2", "alpha3", "alpha4"][seed % 4]] = 0.0
+    return change
+
+
+@pytest.mark.parametrize(("seed", "held"), [(seed, True) for seed in range(40)] + [(seed, False) for seed in range(12)])
+def test_equals_the_exhaustive_search(random_motion, monkeypatch, seed, held):
     rng = np.random.default_rng(seed)
     frames, nodes = random_motion(seed, n_sentences=25, phones_each=10, phones="aa b k iy s m ow t pau")
-    # penalties from worthless, where everything has to become active, to overwhelming
-    scale = [0.0, 0.05, 1.0, 20.0][seed % 4]
-    costs, kernels = prepared(frames, nodes, alpha5=5.0 * scale, alpha6=2.0 * scale)
-    request = request_of(rng, len(nodes), int(rng.choice([1, 2, 7, 30])))
-    rounds = []
-    ours = find_path_by_relaxation(request, costs, on_round=rounds.append)
+    costs, kernels = prepared(frames, nodes, **costly(seed))
+    request = request_of(rng, len(nodes), int(rng.choice([1, 2, 7, 30] if held else [1, 2, 7])))
     theirs = find_path(request, costs, kernels)
-    assert ours.nodes.tolist() == theirs.nodes.tolist()
-    assert ours.cost == theirs.cost
-    assert ours.is_optimal and ours.gap == 0.0
-    for found in rounds:
-        assert found.lower_bound <= theirs.cost * (1 + 1e-12)
-        assert found.upper_bound >= theirs.cost * (1 - 1e-12)
+    monkeypatch.setattr(relaxation, "_PAIRS_A_ROUND", [300, 30_000, 3e7][seed % 3])
+    if not held:
+        costs = TransitionCosts(costs.terms, costs.weights, budget_bytes=0)
+    for most_at_first in (1, 20, 5000):
+        rounds = []
+        ours = relaxation.find_path_by_relaxation(request, costs, on_round=rounds.append, most_at_first=most_at_first)
+        assert ours.nodes.tolist() == theirs.nodes.tolist()
+        assert ours.cost == pytest.approx(theirs.cost, rel=0.0 if held else 1e-6)
+        assert ours.is_optimal and ours.gap == 0.0
+        # a bound over transitions that are computed on the spot holds to their rounding
+        rounding = 1e-12 if held else 1e-6
+        for found in rounds:
+            assert found.lower_bound <= theirs.cost * (1 + rounding)
+            assert found.upper_bound >= theirs.cost * (1 - rounding)
+        assert [r.lower_bound for r in rounds] == sorted(r.lower_bound for r in rounds)
 
 
 def test_ties_go_to_the_lowest_row(random_motion):
@@ -67,6 +83,56 @@ def test_out_of_time_the_gap_is_honest(random_motion):
     best = find_path(request, costs, kernels).cost
     assert hurried.lower_bound <= best <= hurried.cost
     assert hurried.gap == pytest.approx((hurried.cost - hurried.lower_bound) / hurried.cost) or hurried.is_optimal
+
+
+def test_few_phonemes_that_are_never_joined_are_settled_class_by_class(random_motion):
+    frames, nodes = random_motion(9, n_sentences=40, phones_each=10, phones="aa b k iy s m ow t pau")
+    costs, kernels = prepared(frames, nodes)
+    silence = PHONEME_INDEX[PAU]
+    for said in ([silence] * 5, [silence, 3, silence, silence, 9, silence], [1, 1, 1, silence]):
+        request = SearchRequest(np.array(said), np.eye(4)[[1] * len(said)])
+        tiled = TransitionCosts(costs.terms, costs.weights, budget_bytes=0)
+        theirs = find_path(request, costs, kernels)
+        for most_at_first in (2, 5000):
+            ours = find_path_by_relaxation(request, tiled, most_at_first=most_at_first)
+            assert ours.cost == pytest.approx(theirs.cost, rel=1e-6) and ours.is_optimal
+
+
+def test_an_answer_stopped_in_any_round_holds_what_it_says(random_motion):
+    frames, nodes = random_motion(10, n_sentences=40, phones_each=10)
+    costs, kernels = prepared(frames, nodes, alpha6=0.3)
+    request = SearchRequest(np.random.default_rng(10).integers(1, 44, 25), np.eye(4)[[3] * 25])
+    least = find_path(request, costs, kernels).cost
+    tiled = TransitionCosts(costs.terms, costs.weights, budget_bytes=0)
+    rounds = []
+    proved = find_path_by_relaxation(request, tiled, on_round=rounds.append)
+    hurried = find_path_by_relaxation(request, tiled, limit_s=0.0)
+    assert len(rounds) > 2 and rounds[0].lower_bound < rounds[-1].lower_bound
+    assert proved.is_optimal and proved.cost == pytest.approx(least, rel=1e-6)
+    assert hurried.gap > 0.0
+    assert hurried.lower_bound == pytest.approx(rounds[0].lower_bound, rel=2e-6)
+    assert hurried.lower_bound <= least and hurried.cost >= least * (1 - 1e-6)
+
+
+def test_it_can_be_cancelled_between_two_slots(random_motion):
+    class Cancelled(Exception):
+        pass
+
+    class Impatient:
+        def __init__(self):
+            self.steps = 0
+
+        def step(self, fraction, message=""):
+            assert 0.0 <= fraction <= 1.0
+            self.steps += 1
+            if self.steps == 3:
+                raise Cancelled
+
+    frames, nodes = random_motion(11)
+    costs, _ = prepared(frames, nodes)
+    request = SearchRequest(np.arange(1, 9), np.eye(4)[[0] * 8])
+    with pytest.raises(Cancelled):
+        find_path_by_relaxation(request, costs, Impatient())
 
 
 def test_beyond_the_budget_nothing_is_held_and_the_answer_is_the_same(random_motion):
