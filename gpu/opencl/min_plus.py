@@ -196,7 +196,9 @@ def _first_that_builds(cl, devices: list, wide: bool | None):
 
 def _registers_of(device) -> tuple[int, int]:
     """Doubles to a vector, and rows side by side: as many as 32 wide or 16 narrow registers hold in a step."""
-    return (8, 16) if device.native_vector_width_double >= 8 else (4, 8)
+    # PoCL 3.0, which is what its wheel holds, crashes on vectors of 64 bytes
+    crashes = device.platform.name.startswith("Portable") and device.driver_version.startswith("3.0")
+    return (8, 16) if device.native_vector_width_double >= 8 and not crashes else (4, 8)
 
 
 def _reason(error: Exception) -> str:
