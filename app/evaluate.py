@@ -10,6 +10,7 @@ import numpy as np
 
 from app.demo import demo_database
 from app.report.evaluation import Measured, evaluation_figures, evaluation_page
+from app.report.page import number
 from core.errors import UserFacingError
 from core.evaluation.emotion_check import EmotionClassifier, Recognition, tells_emotions
 from core.evaluation.engines.registry import make_engines
@@ -67,20 +68,26 @@ def run(job: EvaluationJob, progress: Progress = SILENT) -> dict[str, object]:
 
 
 def as_table(answer: dict) -> str:
-    """Write the figures of ``answer`` as text."""
+    """Write the figures of ``answer`` as a table that reads as text and as Markdown."""
     columns = {
-        "error_mm2": "mm²", "lip_error_mm": "lip mm", "lip_gap_r": "gap r", "closure_rate": "closed",
-        "gap_variance_ratio": "gap var", "velocity_variance_ratio": "vel var", "acceleration_variance_ratio": "acc var",
-        "seconds_per_sentence": "s",
+        "error_mm2": ("mm²", 2), "lip_error_mm": ("lip mm", 2), "lip_gap_r": ("gap r", 2),
+        "closure_rate": ("closed", 2),
+        "gap_variance_ratio": ("gap var", 2), "velocity_variance_ratio": ("vel var", 2),
+        "acceleration_variance_ratio": ("acc var", 2), "seconds_per_sentence": ("seconds", 3),
     }  # fmt: skip
+    rows = [("", *(title for title, _ in columns.values()))]
+    for name, figures in {**answer["engines"], "noise of the capture": answer["floor"]}.items():
+        rows.append((name, *(number(figures.get(key), digits) for key, (_, digits) in columns.items())))
+    widths = [max(map(len, column)) for column in zip(*rows)]
     lines = [
-        f"{answer['corpus']}, {answer['split']}: {answer['sentences']} sentences",
-        " " * 14 + "".join(f"{title:>9}" for title in columns.values()),
+        "| " + " | ".join((cells[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(cells[1:], widths[1:])))) + " |"
+        for cells in rows
     ]
-    for name, figures in {**answer["engines"], "noise": answer["floor"]}.items():
-        cells = (figures.get(key) for key in columns)
-        lines.append(f"{name:14}" + "".join(f"{'–' if cell is None else format(cell, '.3f'):>9}" for cell in cells))
-    return "\n".join(lines)
+    rule = "|" + "|".join("-" * (w + 1) + ("-" if i == 0 else ":") for i, w in enumerate(widths)) + "|"
+    said = f"{answer['corpus']}, split {answer['split']}, {answer['sentences']} sentences"
+    return "\n".join(
+        (f"{said}{' (synthetic)' if answer['database']['synthetic'] else ''}", "", lines[0], rule, *lines[1:])
+    )
 
 
 def _material(
@@ -125,7 +132,7 @@ def _answer(measured: Measured) -> dict[str, object]:
     answer["emotion_recognised"] = {name: found._asdict() for name, found in measured.recognised.items()}
     answer["database"] = {
         "name": database.name, "synthetic": database.synthetic, "nodes": len(database.nodes),
-        "content_hash": database.content_hash,
+        "content_hash": database.content_hash, "weights": database.weights.as_dict(),
     }  # fmt: skip
     return _plain(answer)
 

@@ -132,6 +132,21 @@ def test_a_report_is_one_page_with_its_figures_and_the_object(efase, database, t
     assert sorted(path.name for path in target.iterdir()) == sorted([PAGE, ANSWER, *(f"{n}.svg" for n in figures)])
 
 
+def test_the_table_is_markdown_with_a_row_an_engine(efase, database):
+    code, out, _ = efase("evaluate", "--db", database, "--engine", "static", "--engine", "phone-means")
+    rows = [line.strip("|").split("|") for line in out.splitlines() if line.startswith("|")]
+    assert code == 0 and {len(row) for row in rows} == {9}
+    assert [row[0].strip() for row in rows] == [
+        "",
+        "-" * len(rows[0][0]),
+        "static",
+        "phone-means",
+        "noise of the capture",
+    ]
+    assert rows[2][3].strip() == "0.00" and rows[-1][-1].strip() == "–"
+    assert len({len(line) for line in out.splitlines() if line.startswith("|")}) == 1
+
+
 def test_a_corpus_folder_is_split_by_the_rule_and_measured_alike(database, folder):
     kept = run(EvaluationJob(database, engines=("static", "phone-means")))
     given = run(EvaluationJob(database, folder, engines=("static", "phone-means")))
