@@ -17,6 +17,9 @@ from core.speech.transcript import Transcript
 # pocketsphinx holds Python's lock all the while it works: up to 0.2 s for alignment of sound this long, more than 1 s
 # for recognition of any. Longer work goes to a process of its own, whose start takes half a second.
 _LONGEST_ALIGNED_HERE_S = 6.0
+_TEXT_FILES = (".txt", ".srt", ".vtt")
+# How Word and OpenDocument files, RTF and PDF begin.
+_DOCUMENTS = ("PK\x03\x04", "{\\rtf", "%PDF")
 _DIED = "The process that listens to the speech ended before it was done."
 
 
@@ -80,10 +83,17 @@ def read_text(text: str) -> str:
     """Return ``text``, or what the file of that name holds."""
     path = Path(text)
     try:
-        is_name = path.suffix == ".txt" or path.is_file()
+        is_name = path.suffix.lower() in _TEXT_FILES or path.is_file()
     except (OSError, ValueError):  # a sentence can be too long for a file name
         is_name = False
-    return text_file.read_text(path, "text file") if is_name else text
+    if not is_name:
+        return text
+    written = text_file.read_text(path, "text file")
+    if "ooTextFile" in written[:200]:
+        raise UserFacingError(f"'{path}' is a TextGrid, not a text.", "Give it as the phones.")
+    if written.startswith(_DOCUMENTS):
+        raise UserFacingError(f"'{path}' is a document, not plain text.", "Save it as plain text (.txt).")
+    return written
 
 
 def emotion_modifiers(emotion: str | None, file: Path | None, duration_s: float) -> list[EmotionModifier]:

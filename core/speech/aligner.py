@@ -13,6 +13,7 @@ from core.media.audio import Audio
 from core.progress import SILENT, Progress
 from core.speech.loudness import FRAME_S, holds_no_speech, levels_db, loud_frames, stretches
 from core.speech.pronunciation import Pronouncer, Pronunciation
+from core.speech.script_marks import without_script_marks
 from core.speech.sphinx import (
     SHORTEST_PHONE_S,
     SPHINX_RATE_HZ,
@@ -40,6 +41,7 @@ _WRONG_TEXT = 48.0
 _DOUBTFUL_WORD = 45.0
 _SHORTEST_DOUBT_S = 0.3
 _MOST_WORDS_IN_MESSAGE = 6
+_LONGEST_MARK = 40
 _MOST_WARNINGS_OF_A_KIND = 3
 
 
@@ -49,7 +51,8 @@ def align(audio: Audio, text: str, lexicon: Lexicon | None = None, progress: Pro
     lexicon : the user's own pronunciations (`core.speech.lexicon.read_lexicon`)
 
     The whole text is first placed word by word; then the phones, in pieces cut at pauses. Words that had to be
-    guessed, words that are hardly heard and loud sound that the text leaves out become warnings of the transcript.
+    guessed, marks of a script that nobody says, words that are hardly heard and loud sound that the text leaves out
+    become warnings of the transcript.
     Raises `UserFacingError` when the text has no word, the sound no speech, or the two do not fit: it then says
     which words are not heard, and where.
     """
@@ -82,6 +85,7 @@ def align(audio: Audio, text: str, lexicon: Lexicon | None = None, progress: Pro
     placed = _with_phones(aligner, sound, placed, said_in_order, progress.part(0.4, 1.0))
     _check_fit(placed, words, audio)
     warnings = [pronunciation.warning for pronunciation in said.values() if pronunciation.warning]
+    warnings += _unspoken(text)
     warnings += _doubts(placed, words)[:_MOST_WARNINGS_OF_A_KIND]
     warnings += _left_out(levels, placed, audio)[:_MOST_WARNINGS_OF_A_KIND]
     return _transcript(placed, words, audio, warnings)
@@ -180,6 +184,13 @@ def _check_fit(placed: Sequence[HeardWord], words: Sequence[str], audio: Audio) 
     if mismatch > _WRONG_TEXT:
         worst = max(_doubtful_runs(placed), key=lambda run: run[-1].end_s - run[0].start_s)
         raise UserFacingError(f"The text does not fit {audio.name}: {_quoted(worst, words)} is not heard.", _REMEDY)
+
+
+def _unspoken(text: str) -> list[str]:
+    _, marks = without_script_marks(text)
+    more = ", ..." if len(marks) > _MOST_WORDS_IN_MESSAGE else ""
+    quoted = ", ".join(f"'{mark[:_LONGEST_MARK]}'" for mark in marks[:_MOST_WORDS_IN_MESSAGE])
+    return [f"Not taken as spoken: {quoted}{more}."] if marks else []
 
 
 def _doubts(placed: Sequence[HeardWord], words: Sequence[str]) -> list[str]:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 import unicodedata
 
+from core.speech.abbreviations import read_in_full
 from core.speech.number_words import number_words
+from core.speech.script_marks import without_script_marks
 
 _QUOTES = str.maketrans({"’": "'", "‘": "'", "ʼ": "'", "`": "'", "´": "'", "′": "'", "“": '"', "”": '"'})
 _DOUBLE_QUOTES = re.compile(r"''+")
 _HYPHENS = re.compile(r"[\u2010\u2011\u00ad\u2212]")
 _DASHES = re.compile(r"[\u2012-\u2015_/\\|~]|--+|\.\.+|…")
-# scripts mark what is seen or done, not spoken, in square brackets
-_DIRECTIONS = re.compile(r"\[[^\]]*\]|<[^>]*>|\{[^}]*\}")
 _SYMBOLS = {"&": "and", "@": "at", "+": "plus", "=": "equals", "°": "degrees", "%": "percent", "#": "number"}
 _EDGES = re.compile(r"^(?!-\d)[^\w$£€.&@+=°%#']+|[^\w%°&@+=']+$")
 _NUMBER_LIKE = re.compile(r"[$£€]?\.?\d")
@@ -23,11 +23,13 @@ def spoken_words(text: str) -> list[str]:
     """Return the words of ``text`` in the order they are said, as they are spelled.
 
     Numbers, sums of money, years and times of day become words; curly quotes become straight, dashes part words,
-    hyphens stay ("twenty-one" is one word here); what stands in square, curly or angle brackets is left out.
+    hyphens stay ("twenty-one" is one word here); what a script does not mean to be said is left out (see
+    `core.speech.script_marks.without_script_marks`).
     """
+    text = read_in_full(without_script_marks(text)[0])
     text = unicodedata.normalize("NFKC", text.replace("…", " ")).translate(_QUOTES)
     text = _DOUBLE_QUOTES.sub('"', text)
-    text = _DASHES.sub(" ", _HYPHENS.sub("-", _DIRECTIONS.sub(" ", text)))
+    text = _DASHES.sub(" ", _HYPHENS.sub("-", text))
     words: list[str] = []
     for token in text.split():
         words += _words_of(_EDGES.sub("", token))

@@ -48,3 +48,19 @@ def test_recognition_can_be_cancelled_while_it_listens(spoken):
     assert speech.recognised and speech.text
     # in this process one stretch would hold the lock for most of the time
     assert full.longest_s < 0.25 * (time.monotonic() - began_s)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "says"),
+    [
+        ("script.docx", b"PK\x03\x04\x14\x00\x06\x00\x08\xff", "is a document, not plain text"),
+        ("script.rtf", b"{\\rtf1\\ansi Hello}", "is a document, not plain text"),
+        ("script.txt", b'File type = "ooTextFile"\nObject class = "TextGrid"\n', "is a TextGrid, not a text"),
+        ("missing.srt", None, "There is no text file"),
+    ],
+)
+def test_a_file_that_holds_no_text_is_named(spoken, tmp_path, name, content, says):
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
+    with pytest.raises(UserFacingError, match=says):
+        load_speech(spoken.audio, str(tmp_path / name))

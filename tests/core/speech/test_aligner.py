@@ -74,6 +74,7 @@ def test_spelling_case_and_sound_format_do_not_matter():
     fancy = align(resampled(audio, 44_100), "“Bin blue—at F, 4… [beat] please!”")
     assert [w.word.lower() for w in fancy.words] == [w.word for w in plain.words] == [word for word, _, _ in words]
     assert fancy.phones == plain.phones
+    assert plain.warnings == () and fancy.warnings == ("Not taken as spoken: '[beat]'.",)
     for one, two in zip(plain.phonemes, fancy.phonemes):
         assert one.start_s == pytest.approx(two.start_s, abs=0.03)
 
