@@ -1,5 +1,8 @@
 """Edits against a cold search of the same request."""
 
+from dataclasses import replace
+from typing import ClassVar
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
@@ -14,13 +17,14 @@ from core.search.constraints import SearchRequest
 from core.search.session import SearchSession
 from core.search.terms import TransitionTerms, default_weights
 from core.search.transitions import TransitionCosts
+from core.search.weights import SearchWeights
 from core.speech.phoneme import PHONEMES
 
 N_SLOTS = 9
 PHONES = [PHONEMES.index(p) for p in ("aa", "b", "k", "iy", "pau")]
 
 
-def small_costs(seed):
+def small_costs(seed, **further):
     rng = np.random.default_rng(seed)
     builder, frames, first = NodeTableBuilder(), [], 0
     for s in range(8):
@@ -31,7 +35,8 @@ def small_costs(seed):
         builder.add_sentence(f"s{s}", s % 4, phones, stops - lengths, stops, np.zeros(stops[-1], bool), first)
         first += int(stops[-1])
     frames, nodes = np.concatenate(frames), builder.table()
-    return TransitionCosts(TransitionTerms(frames, nodes, 120.0), default_weights(frames, nodes, 120.0))
+    weights = SearchWeights.from_dict({**default_weights(frames, nodes, 120.0).as_dict(), **further})
+    return TransitionCosts(TransitionTerms(frames, nodes, 120.0), weights)
 
 
 def with_kernels(costs):
@@ -41,24 +46,26 @@ def with_kernels(costs):
 
 
 def plain(n_slots=N_SLOTS, seed=0):
-    return SearchRequest(np.random.default_rng(seed).choice(PHONES, n_slots), np.eye(4)[[0] * n_slots])
+    phonemes = np.random.default_rng(seed).choice(PHONES, n_slots)
+    return SearchRequest(phonemes, np.eye(4)[[0] * n_slots], lengths=np.arange(n_slots) + 1)
 
 
 class Editing(RuleBasedStateMachine):
     """Random edits; after each, path and cost equal a cold exhaustive search, and so do prices when they are read."""
 
+    further: ClassVar = {}
+
     def __init__(self):
         super().__init__()
-        self.costs = small_costs(1)
+        self.costs = small_costs(1, **self.further)
         self.kernels = with_kernels(self.costs)
         self.n_nodes = len(self.costs.terms.nodes)
         self.session = SearchSession(plain(), self.costs, self.kernels)
 
     def edit(self, **changes):
         now = self.session.request
-        fields = {"phonemes": now.phonemes, "emotions": now.emotions, "pins": now.pins, "removed": now.removed}
         before = self.session.path
-        request = SearchRequest(**{**fields, **changes})
+        request = replace(now, **changes)
         try:
             self.session.update(request)
         except UserFacingError:
@@ -106,7 +113,15 @@ class Editing(RuleBasedStateMachine):
         now = self.session.request
         if now.n_slots <= N_SLOTS and not now.pins:
             again = np.insert(np.arange(now.n_slots), slot, slot)
-            self.edit(phonemes=now.phonemes[again][:N_SLOTS], emotions=now.emotions[again][:N_SLOTS])
+            columns = {"phonemes": now.phonemes, "emotions": now.emotions, "lengths": now.lengths}
+            self.edit(**{name: column[again][:N_SLOTS] for name, column in columns.items()})
+
+    @rule(slot=st.integers(0, N_SLOTS - 2), by=st.integers(1, 6))
+    def drag_a_boundary(self, slot, by):
+        lengths = self.session.request.lengths.copy()
+        lengths[slot] += by
+        lengths[slot + 1] = max(1, lengths[slot + 1] - by)
+        self.edit(lengths=lengths)
 
     @rule()
     def refresh(self):
@@ -121,7 +136,7 @@ class Editing(RuleBasedStateMachine):
         if node in now.removed or now.pins.get(slot, node) != node:
             assert price == np.inf
             return
-        forced = SearchRequest(now.phonemes, now.emotions, {**now.pins, slot: node}, now.removed)
+        forced = replace(now, pins={**now.pins, slot: node})
         cost = find_path(forced, self.costs, self.kernels).cost
         assert price == pytest.approx(cost - self.session.path.cost, rel=1e-9, abs=1e-9 * max(cost, 1.0))
 
@@ -133,10 +148,16 @@ class Editing(RuleBasedStateMachine):
         assert self.session.path.is_optimal
 
 
-def explore(examples, steps):
+class EditingInContext(Editing):
+    """The same with the phones around a slot, and its length, in its cost: an edit reaches its neighbours."""
+
+    further: ClassVar = {"context_before": 1.0, "context_after": 0.7, "duration": 0.5}
+
+
+def explore(machine, examples, steps):
     checks = [HealthCheck.too_slow, HealthCheck.data_too_large]
     run_state_machine_as_test(
-        Editing,
+        machine,
         settings=settings(
             max_examples=examples,
             stateful_step_count=steps,
@@ -147,13 +168,15 @@ def explore(examples, steps):
     )
 
 
-def test_edits_equal_cold_searches():
-    explore(examples=15, steps=20)
+@pytest.mark.parametrize("machine", [Editing, EditingInContext])
+def test_edits_equal_cold_searches(machine):
+    explore(machine, examples=15, steps=20)
 
 
 @pytest.mark.prove
-def test_thousands_of_edit_sequences_equal_cold_searches():
-    explore(examples=2000, steps=30)
+@pytest.mark.parametrize("machine", [Editing, EditingInContext])
+def test_thousands_of_edit_sequences_equal_cold_searches(machine):
+    explore(machine, examples=1000, steps=30)
 
 
 def test_remove_then_pin_uses_no_stale_table():
