@@ -142,7 +142,44 @@ def info(
     print(f"{summary['name']}{' (synthetic)' if summary['synthetic'] else ''}: {_in_words(summary)}")
     print(f"emotions: {', '.join(f'{n} {e}' for e, n in summary['emotions'].items())}")
     print(f"phonemes: {', '.join(f'{p} {n}' for p, n in summary['phonemes'].items())}")
+    print(f"weights: {_tuning_in_words(summary['tuning'])}")
     print(f"content {summary['content_hash'][:16]}")
+
+
+@app.command()
+def tune(
+    db: Database = None,
+    starts: Annotated[int, typer.Option(min=2, help="Random starts; each pays for 200 sentence-solves.")] = 100,
+    seed: Annotated[int, typer.Option(min=0)] = 2008,
+    method: Annotated[str, typer.Option(help="evolution, or gradient as in the paper.")] = "evolution",
+    objective: Annotated[str, typer.Option(help="all markers (equations 12 and 13), lips, or the lip gap.")] = "all",
+    as_printed: Annotated[bool, typer.Option("--as-printed", help="Tune α1 to α6 and PNT of the paper's own.")] = False,
+    jobs: Annotated[int, typer.Option(min=-1, help="Processes; -1 is one a core.")] = -1,
+    cluster: Annotated[str | None, typer.Option(metavar="tcp://HOST:PORT", help="A Dask scheduler.")] = None,
+    limit_s: Annotated[float | None, typer.Option(min=1, help="Stop after so many seconds.")] = None,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the weights to a JSON file too.")] = None,
+    forget: Annotated[bool, typer.Option("--forget", help="Give the database its untuned weights back.")] = False,
+    json: Json = False,
+) -> None:
+    """Find the search's weights on the sentences held out to tune; a run that was cut goes on where it was."""
+    import math
+
+    from app import tune as tuning
+    from core.evaluation.tuning import TuningSettings
+
+    with progress_bar("tune") as progress:
+        if forget:
+            answer = tuning.forget(db, progress)
+        else:
+            settings = TuningSettings(method, starts, seed, with_further=not as_printed)
+            answer = tuning.run(
+                tuning.TuningJob(db, settings, objective, as_printed, jobs or -1, cluster, limit_s or math.inf, output),
+                progress,
+            )
+    if json:
+        print_json(answer)
+    else:
+        print("the weights are untuned" if forget else tuning.in_words(answer))
 
 
 @app.command()
@@ -192,6 +229,7 @@ def synth(
     markers: Annotated[Path | None, typer.Option(help="CSV `marker,vertex` for a face of your own.")] = None,
     backend: Annotated[str, typer.Option(help="auto, numpy, opencl or glsl.")] = "auto",
     pin: Annotated[list[str] | None, typer.Option(metavar="SLOT=NODE", help="Tie a motion node to a slot.")] = None,
+    weights: Annotated[str, typer.Option(help="tuned (the database's), default (untuned), or a JSON file.")] = "tuned",
     fps: Annotated[str, typer.Option(help="24, 25, 29.97, 30 or 60.")] = "30",
     start_frame: Annotated[int, typer.Option(min=0, help="Number of the first frame (timecode).")] = 0,
     size: Annotated[str, typer.Option(help="Picture size.")] = "640x480",
@@ -212,6 +250,7 @@ def synth(
     job = SynthesisJob(
         audio=audio, outputs=tuple(output), text=text, phones=phones, database=db, emotion=emotion, emotions=emotions,
         engine=engine, face=face, marker_file=markers, backend=backend, pins=tuple(pin or ()),
+        weights=weights,
         video=VideoSettings(frame_rate(fps), *video_size(size), style, start_frame, head, gaze, texture,
                             None if background is None else background_colour(background),
                             None if span is None else span_of_time(span)),
@@ -305,6 +344,31 @@ def bench_search(
         print(bench.as_table(answer))
 
 
+@bench.command("growth")
+def bench_growth(
+    db: Database = None,
+    nodes: Annotated[list[int] | None, typer.Option(min=1, help="Sizes; up to 100,000 when absent.")] = None,
+    phonemes: Annotated[list[int] | None, typer.Option(min=1, help="Lengths; the paper's four when absent.")] = None,
+    limit_s: Annotated[float, typer.Option(min=0.0, help="Longest search; its gap is certified.")] = 60.0,
+    pictures: Annotated[Path | None, typer.Option(help="Folder for search-growth.png and search-gap.png.")] = None,
+    json: Json = False,
+) -> None:
+    """Measure how the search grows with database and sentence, and how its certified gap falls with time."""
+    from app import growth_bench
+
+    database = _open(db)
+    with progress_bar("bench") as progress:
+        answer = growth_bench.bench_growth(
+            database, nodes or growth_bench.SIZES, phonemes or growth_bench.PAPER_LENGTHS, limit_s, progress
+        )
+    if pictures is not None:
+        growth_bench.draw(answer, pictures)
+    if json:
+        print_json(answer)
+    else:
+        print(growth_bench.as_table(answer))
+
+
 @bench.command("align")
 def bench_align(
     corpus: Annotated[Path | None, typer.Argument(help="Folder laid out like GRID; the demo's when absent.")] = None,
@@ -344,6 +408,14 @@ def _open(path: Path | None):
         return open_database(path)
     with progress_bar("demo database") as progress:
         return demo_database(progress)
+
+
+def _tuning_in_words(tuning: dict) -> str:
+    found = tuning.get("search")
+    if not found:
+        return "untuned"
+    return (f"tuned on {found['sentences']} sentences, {found['mean_error']:.3f} mm² a sentence "
+            f"(untuned {found['untuned_mean_error']:.3f})")  # fmt: skip
 
 
 def _in_words(summary: dict) -> str:

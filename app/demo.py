@@ -13,10 +13,14 @@ from core.folders import cache_dir
 from core.media.swap_in import check_target
 from core.motion.corpus import Corpus
 from core.motion.database import VERSION, MotionDatabase, open_database
+from core.motion.stored_weights import store_tuned
 from core.progress import SILENT, Progress
+from core.search.weight_files import read_weights
 
 # Versions of the workstation that are used side by side shall not throw out each other's database.
 _KEPT = 3
+# made by `efase tune --output resources/demo/weights.json`
+_WEIGHTS = Path(str(files("resources").joinpath("demo"))) / "weights.json"
 log = logging.getLogger("database")
 
 
@@ -64,6 +68,8 @@ def demo_database(progress: Progress = SILENT) -> MotionDatabase:
             "Let EFASE_CACHE_DIR name a folder that can be written, or name a database.",
         ) from error
     database = build_database(demo_corpus(progress.part(0.0, 0.3)), path, progress=progress.part(0.3, 1.0))
+    if _WEIGHTS.is_file():
+        database = store_tuned(database, read_weights(_WEIGHTS)[1])
     with contextlib.suppress(OSError):  # on Windows one may be open in another workstation
         for older in sorted(path.parent.glob("demo-*.h5"), key=lambda p: p.stat().st_mtime)[:-_KEPT]:
             older.unlink(missing_ok=True)

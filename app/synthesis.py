@@ -15,6 +15,7 @@ from app.speech import emotion_modifiers, load_speech
 from core.errors import UserFacingError
 from core.face.default_face import FaceUnavailable
 from core.motion.database import open_database
+from core.motion.stored_weights import named_weights
 from core.progress import SILENT, Progress
 from core.search.engine import SearchAnswer, SearchEngine
 from core.synthesis.engine import SpeechInput
@@ -40,6 +41,7 @@ class SynthesisJob:
     marker_file: Path | None = None
     backend: str = "auto"
     pins: tuple[str, ...] = ()
+    weights: str = "tuned"
     video: VideoSettings = field(default_factory=VideoSettings)
     lexicon: Path | None = None
     strict: bool = False
@@ -53,6 +55,7 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
     _check_inputs(job)
     pins = _pins(job.pins)
     database = open_database(job.database) if job.database else demo_database(progress.part(0.0, 0.1))
+    weights = named_weights(job.weights, database)
     kernels, backend_sentence = open_kernels(job.backend)
 
     began = time.perf_counter()
@@ -60,7 +63,7 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
     modifiers = emotion_modifiers(job.emotion, job.emotions, speech.audio.duration_s)
     aligned_s = time.perf_counter() - began
     # a backend that was asked for by name shall do the work; all ways give the same path
-    engine = SearchEngine(database, kernels, exhaustive=job.backend != "auto")
+    engine = SearchEngine(database, kernels, weights, exhaustive=job.backend != "auto")
     answer = engine.synthesise(SpeechInput(speech.transcript, modifiers, pins), progress.part(0.25, 0.5))
 
     began = time.perf_counter()

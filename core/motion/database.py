@@ -91,6 +91,12 @@ class MotionDatabase:
         return _weights(self.tuning["untuned_weights"]) if self.tuning else self.weights
 
     @cached_property
+    def paper_weights(self) -> SearchWeights:
+        """Weights for the search as the paper prints it: tuned for just that, if they were, else untuned."""
+        tuned = self.tuning.get("as_printed")
+        return _weights(tuned["weights"]) if tuned else self.untuned_weights.as_printed
+
+    @cached_property
     def rest_coefficients(self) -> np.ndarray:
         """The rest pose in PCA space, float64, shape (n_dims,)."""
         return self.pca.coefficients(self.markers.rest)
@@ -292,8 +298,10 @@ def _weights(values: object) -> SearchWeights:
 def _tuning(record: object) -> dict[str, object]:
     if not isinstance(record, dict):
         raise Unsound("what it says of its tuning is no record")
-    if record:
-        _weights(record["untuned_weights"])
+    for kind, found in record.items():
+        _weights(found if kind == "untuned_weights" else found["weights"])
+    if record and "untuned_weights" not in record:
+        raise Unsound("its untuned weights are gone")
     return record
 
 

@@ -18,8 +18,8 @@ EngineFactory = Callable[[MotionDatabase, SearchKernels], MotionEngine]
 
 
 def paper_search(database: MotionDatabase, kernels: SearchKernels) -> SearchEngine:
-    """Make the search as Deng and Neumann (2008) print it, with the weights of the database."""
-    return SearchEngine(database, kernels, database.weights.as_printed, options=PAPER)
+    """Make the search as Deng and Neumann (2008) print it, with weights tuned for just that if there are any."""
+    return SearchEngine(database, kernels, database.paper_weights, options=PAPER)
 
 
 ENGINES: Mapping[str, EngineFactory] = {

@@ -13,11 +13,15 @@ from core.motion.build import BuildSettings, build_database
 from core.motion.corpus import Corpus
 from core.motion.database import open_database
 from core.motion.recording import Recording
-from core.motion.stored_weights import forget_weights, store_weights
+from core.motion.stored_weights import AS_PRINTED, SEARCH, forget_weights, store_tuned
 from core.search.weights import SearchWeights
 from core.speech.transcript import PhonemeUtterance, Transcript
 
-TUNED = SearchWeights(pnt=3.5, alpha1=0.25, alpha4=0.9)
+TUNED = SearchWeights(pnt=3.5, alpha1=0.25, alpha4=0.9, context_before=0.5)
+
+
+def record(weights: SearchWeights = TUNED, tuned: str = SEARCH) -> dict[str, object]:
+    return {"tuned": tuned, "weights": weights.as_dict(), "split": "tune"}
 
 
 @pytest.fixture
@@ -34,24 +38,32 @@ def stored(tmp_path):
 
 
 def test_weights_are_stored_and_the_untuned_ones_stay_at_hand(stored):
-    changed = store_weights(stored, TUNED, {"split": "tune", "total_error_mm2": 1.5})
+    changed = store_tuned(stored, record())
     reopened = open_database(stored.path)
     assert reopened.weights == changed.weights == TUNED
     assert reopened.untuned_weights == stored.weights
-    assert reopened.tuning["split"] == "tune"
-    again = store_weights(reopened, replace(TUNED, pnt=9.0), {})
+    assert reopened.tuning[SEARCH]["split"] == "tune"
+    again = store_tuned(reopened, record(replace(TUNED, pnt=9.0)))
     assert again.untuned_weights == stored.weights
 
 
+def test_weights_for_the_search_as_printed_stay_beside_those_in_use(stored):
+    printed = replace(TUNED, context_before=0.0)
+    assert stored.paper_weights == stored.weights.as_printed
+    both = store_tuned(store_tuned(stored, record()), record(printed, AS_PRINTED))
+    assert (both.weights, both.paper_weights, both.untuned_weights) == (TUNED, printed, stored.weights)
+    assert store_tuned(stored, record()).paper_weights == stored.weights.as_printed
+
+
 def test_tuning_is_no_part_of_the_content(stored):
-    changed = store_weights(stored, TUNED, {"split": "tune"})
+    changed = store_tuned(stored, record())
     assert changed.content_hash == stored.content_hash
     assert np.array_equal(changed.frames, stored.frames)
     assert changed.maps.keys() == stored.maps.keys()
 
 
 def test_forgetting_gives_back_the_database_as_it_was_built(stored):
-    forgotten = forget_weights(store_weights(stored, TUNED, {"split": "tune"}))
+    forgotten = forget_weights(store_tuned(stored, record()))
     assert forgotten.weights == stored.weights
     assert not forgotten.tuning
 
@@ -64,7 +76,7 @@ def test_a_folder_that_refuses_leaves_the_database_as_it_is(stored, monkeypatch)
 
     monkeypatch.setattr(Path, "write_bytes", full)
     with pytest.raises(UserFacingError, match="No space left"):
-        store_weights(stored, TUNED, {})
+        store_tuned(stored, record())
     monkeypatch.undo()
     assert stored.path.read_bytes() == before
     assert [p.name for p in stored.path.parent.iterdir()] == ["db.h5"]
@@ -73,7 +85,7 @@ def test_a_folder_that_refuses_leaves_the_database_as_it_is(stored, monkeypatch)
 def test_weights_that_are_none_are_damage(stored):
     import h5py
 
-    store_weights(stored, TUNED, {})
+    store_tuned(stored, record())
     with h5py.File(stored.path, "r+") as file:
         file.attrs["tuning"] = '{"untuned_weights": {"pnt": -1}}'
     with pytest.raises(UserFacingError, match="damaged"):
