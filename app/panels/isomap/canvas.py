@@ -31,7 +31,7 @@ class MapBox(pg.ViewBox):
 
     def __init__(self) -> None:
         super().__init__(lockAspect=True, enableMenu=False)
-        self.tool = MOVE
+        self.tool = self._drag_tool = MOVE
         self._way: list[QPointF] = []
         self._outline = pg.PlotCurveItem(
             pen=pg.mkPen(colour(theme().accent), width=1), fillLevel=None, brush=colour(theme().accent, 0.12)
@@ -52,12 +52,9 @@ class MapBox(pg.ViewBox):
 
     def mouseDragEvent(self, event, axis=None) -> None:
         """Move the plane, or draw an outline around dots."""
-        tool = self.tool
-        if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
-            tool = BOX
-        elif event.modifiers() & Qt.KeyboardModifier.ControlModifier:
-            tool = LASSO
-        if tool == MOVE or event.button() != Qt.MouseButton.LeftButton:
+        if event.isStart():
+            self._drag_tool = self._tool_for(event)
+        if self._drag_tool == MOVE:
             super().mouseDragEvent(event, axis)
             return
         event.accept()
@@ -65,7 +62,7 @@ class MapBox(pg.ViewBox):
         if event.isStart():
             self._way = [start]
         self._way.append(now)
-        outline = _corners(start, now) if tool == BOX else np.array([_array(p) for p in self._way])
+        outline = _corners(start, now) if self._drag_tool == BOX else np.array([_array(p) for p in self._way])
         if event.isFinish():
             self._outline.setData([], [])
             self._way = []
@@ -74,6 +71,15 @@ class MapBox(pg.ViewBox):
         else:
             closed = np.vstack([outline, outline[:1]])
             self._outline.setData(closed[:, 0], closed[:, 1])
+
+    def _tool_for(self, event) -> str:
+        if event.button() != Qt.MouseButton.LeftButton:
+            return MOVE
+        if self.tool == MOVE and event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
+            return BOX
+        if self.tool == MOVE and event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+            return LASSO
+        return self.tool
 
 
 class MapCanvas(pg.GraphicsView):

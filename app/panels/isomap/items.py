@@ -58,6 +58,10 @@ class MapMarks(pg.ScatterPlotItem):
         """Show one sign, or none."""
         self.show_points(_NO_POINTS if point is None else np.asarray(point)[None])
 
+    def mouseClickEvent(self, event) -> None:
+        """Leave clicks to the plane; a sign has nothing to do with them."""
+        event.ignore()
+
 
 class NodeInUse(MapMarks):
     """The frame that the path uses now: a diamond."""

@@ -197,7 +197,9 @@ class IsomapPane(Pane):
         """Keep a place; a captured frame selects its node too, with Ctrl beside those that are selected."""
         self.clip.stop()
         self._keep(picked)
-        captured = frozenset([picked.node]) if len(picked.frames) == 1 and picked.inside else frozenset()
+        start, stop = self._database.nodes.start[picked.node], self._database.nodes.stop[picked.node]
+        of_node = picked.inside and bool(((picked.frames >= start) & (picked.frames < stop)).all())
+        captured = frozenset([picked.node]) if of_node else frozenset()
         self._select(self.selection ^ captured if adds else captured)
 
     def on_double_clicked(self, picked: MapPick) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt, QTimer, Signal
 from PySide6.QtGui import QPolygonF
@@ -53,6 +55,7 @@ class MapView(QWidget):
         self.shown: ShownMap | None = None
         self.sigma_px, self.rho_gain = 9.0, 1.0
         self._colouring: Colouring | None = None
+        self._used: MapPick | None = None
         self._drawn = np.zeros(0, bool)
         self.box = MapBox()
         self.canvas = MapCanvas(self.box)
@@ -114,6 +117,7 @@ class MapView(QWidget):
 
     def show_used(self, used: MapPick | None) -> None:
         """Show the node and the frame in use."""
+        self._used = used
         self._show_way(self.used_way, None if used is None else used.node)
         self.in_use.show_at(None if used is None else self.place_of(used))
 
@@ -215,12 +219,16 @@ class MapView(QWidget):
         self._say(self.clicked, point, adds)
 
     def _say(self, signal, point: np.ndarray, *more: object) -> None:
-        """Tell what was clicked: the captured frame of a dot that is near, else the place itself."""
+        """Tell what was clicked: the frame in use, or the captured frame of a dot, if near; else the place itself."""
         if self.shown is None:
             return
-        px = self.box.viewPixelSize()
-        nearest = int((((self.shown.points - point) / px) ** 2).sum(axis=1).argmin())
-        if np.linalg.norm((self.shown.points[nearest] - point) / px) <= _NEAR_PX:
+        away_px = np.linalg.norm((self.shown.points - point) / self.box.viewPixelSize(), axis=1)
+        nearest = int(away_px.argmin())
+        in_use = None if self._used is None else self.place_of(self._used)
+        use_px = np.inf if in_use is None else np.linalg.norm((in_use - point) / self.box.viewPixelSize())
+        if use_px <= min(_NEAR_PX, away_px[nearest]):
+            signal.emit(replace(self._used, in_use=False), *more)
+        elif away_px[nearest] <= _NEAR_PX:
             signal.emit(MapPick.captured(self.shown, nearest), *more)
         else:
             signal.emit(self.pick(point), *more)
