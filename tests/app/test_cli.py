@@ -461,7 +461,7 @@ def test_our_own_fault_is_a_sentence_too(efase, monkeypatch, tmp_path):
     assert "ZeroDivisionError" in (tmp_path / "last-failure.txt").read_text()
 
 
-@pytest.mark.parametrize("verb", ["demo", "build", "info", "align", "synth"])
+@pytest.mark.parametrize("verb", ["demo", "build", "info", "align", "synth", "evaluate"])
 def test_every_verb_has_help(efase, verb):
     code, out, _ = efase(verb, "--help")
     assert code == 0 and verb in out
