@@ -386,6 +386,20 @@ def bench_align(
         print(alignment_bench.as_table(answer))
 
 
+@bench.command("maps")
+def bench_maps(db: Database = None, json: Json = False) -> None:
+    """Measure how well the Isomap and the PCA map of each phoneme keep neighbours."""
+    from app import map_bench
+
+    database = _open(db)
+    with progress_bar("bench") as progress:
+        answer = map_bench.bench_maps(database, progress)
+    if json:
+        print_json(answer)
+    else:
+        print(map_bench.as_table(answer))
+
+
 @bench.command("suspicion")
 def bench_suspicion(db: Database = None, json: Json = False) -> None:
     """Measure how well suspicion finds the demo corpus's planted faults, beside chance and plain distance."""
