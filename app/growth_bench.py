@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import itertools
+import math
 import os
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -119,6 +120,13 @@ def _steps(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
     return sorted(points + held, key=lambda point: (point[0], -point[1]))
 
 
+def _ticks(values: Iterable[float]) -> list[tuple[float, str]]:
+    """Label 1, 2 and 5 of each decade on a logarithmic axis."""
+    values = [value for value in values if value > 0.0]
+    decades = range(math.floor(math.log10(min(values))), math.ceil(math.log10(max(values))) + 1)
+    return [(math.log10(step * 10.0**d), f"{step * 10.0**d:,.6g}") for d in decades for step in (1, 2, 5)]
+
+
 def _plot(pg, curves: dict[str, list[tuple[float, float]]], x: str, y: str, log_y: bool, path: Path) -> Path:
     import pyqtgraph.exporters
 
@@ -127,12 +135,16 @@ def _plot(pg, curves: dict[str, list[tuple[float, float]]], x: str, y: str, log_
     plot = widget.plotItem
     plot.addLegend(offset=(-20, 20) if not log_y else (60, 20), labelTextColor="k")
     plot.setLogMode(x=True, y=log_y)
+    plot.getViewBox().setDefaultPadding(0.08)
     for side, name in (("bottom", x), ("left", y)):
         plot.setLabel(side, name, color="k")
         plot.getAxis(side).enableAutoSIPrefix(False)
         plot.getAxis(side).setPen("k")
         plot.getAxis(side).setTextPen("k")
     plot.getAxis("bottom").setHeight(50)
+    plot.getAxis("bottom").setTicks([_ticks(point[0] for points in curves.values() for point in points)])
+    if log_y:
+        plot.getAxis("left").setTicks([_ticks(point[1] for points in curves.values() for point in points)])
     plot.showGrid(x=True, y=True, alpha=0.2)
     for i, (name, points) in enumerate(curves.items()):
         colour = pg.intColor(i, len(curves), maxValue=180)

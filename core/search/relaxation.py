@@ -42,6 +42,7 @@ _FIRST_REACH, _FIRST_REACH_COMPUTED = 2.1, 0.9
 _MOST_AT_FIRST = 5000  # nodes of a slot
 _WORTH_A_LOOK = 50  # inactive nodes of a slot for which a tighter bound costs less than their activation
 _WORTH_A_LOOK_HELD = 10_000
+_PAIRS_AT_A_LOOK = 1 << 23
 _PAIRS_A_ROUND = 3e7  # transitions that a round adds, more only where a single slot needs more
 
 
@@ -234,9 +235,12 @@ def _least_through(
 ) -> np.ndarray:
     """A tighter bound for inactive nodes: joins with active neighbours without DSC, those with imaginary ones least."""
     bound = slots[p].local[rows].copy()
-    for first in range(0, len(rows), 4000):
-        part = rows[first : first + 4000]
-        around = bound[first : first + 4000]
+    if len(slots) == 1:
+        return bound
+    step = max(1, _PAIRS_AT_A_LOOK // max(len(slots[q].active) for q in (p - 1, p + 1) if 0 <= q < len(slots)))
+    for first in range(0, len(rows), step):
+        part = rows[first : first + step]
+        around = bound[first : first + step]
         if p:
             joins = costs.least(part, slots[p - 1].active) + solved.relaxed[p - 1]
             around += np.minimum(joins.min(axis=1), solved.reach_unseen[p][classes.follows[part]])

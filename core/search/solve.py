@@ -14,8 +14,9 @@ from core.search.transitions import TransitionCosts
 
 # Gathering one transition for the relaxation takes some fifty times as long as reading it in a pass over the matrix.
 _WIDEST_LATTICE = 0.02
-# Without a matrix the lattice is all there is: 2 GiB of it, and three times as much while it is solved for a moment.
+# Without a matrix the lattice is all there is: 2 GiB of it, for a minute, which most sentences do not need.
 _MOST_PAIRS = 2**29
+_LONGEST_S = 60.0
 
 
 def solve(
@@ -28,11 +29,11 @@ def solve(
 
     kernels : gives a compute backend that was prepared with the matrix of ``costs``; asked only when it is needed
     Beyond the memory budget there is no matrix, and the relaxation goes on as long as its lattice stays within a budget
-    of its own; the answer is then the best path that it found, with the bound that it reached. Raises `UserFacingError`
-    when the request cannot be satisfied, or the database is too large for it.
+    of its own, a minute at most; the answer is then the best path that it found, with the bound that it reached. Raises
+    `UserFacingError` when the request cannot be satisfied, or the database is too large for it.
     """
     if not costs.is_held:
-        path = find_path_by_relaxation(request, costs, progress, most_pairs=_MOST_PAIRS)
+        path = find_path_by_relaxation(request, costs, progress, _LONGEST_S, most_pairs=_MOST_PAIRS)
         if path is None:
             raise UserFacingError(
                 f"A database of {len(costs.terms.nodes)} motion nodes is too large for this sentence.",
