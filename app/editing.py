@@ -20,14 +20,18 @@ from core.document.edits import (
     PinMotionNode,
     SetEmotion,
     SetOutput,
+    SetPolish,
     SetReferenceVideo,
+    SetWeights,
     UnlockSlots,
 )
 from core.document.parts import FaceChoice, ReferenceVideo
 from core.errors import UserFacingError
 from core.motion.curation import Removal
+from core.search.weights import SearchWeights
 from core.speech.emotion import EmotionModifier
 from core.speech.emotion_painting import erased, painted
+from core.synthesis.polish import Polish
 
 _gestures = itertools.count()
 
@@ -131,6 +135,13 @@ class Editing(Looking):
         if slots:
             self.push(UnlockSlots.on(self.document, slots))
 
+    # Polish
+
+    def set_polish(self, polish: Polish, label: str, gesture: int | None = None) -> None:
+        """Lay other gains over the motion."""
+        if polish != self.document.polish:
+            self.push(SetPolish.on(self.document, polish, label, gesture))
+
     # Motion nodes
 
     def remove_nodes(self, nodes: Iterable[str], why: str) -> None:
@@ -144,6 +155,13 @@ class Editing(Looking):
         nodes = tuple(nodes)
         if nodes:
             self.push(RestoreMotionNodes.on(self.document, nodes, only_here or self.removes_only_here))
+
+    # Search
+
+    def set_weights(self, weights: SearchWeights | None, label: str, gesture: int | None = None) -> None:
+        """Search under other weights; None are the database's own."""
+        if weights != self.document.weights:
+            self.push(SetWeights.on(self.document, weights, label, gesture))
 
     # Output
 

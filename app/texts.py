@@ -65,6 +65,8 @@ EDIT_FRAME_RATE = "Set {name} frames a second"
 EDIT_START_FRAME = "Number the first frame {number}"
 EDIT_HEAD_MOVES = "Let the head move"
 EDIT_HEAD_STILL = "Keep the head still"
+EDIT_WEIGHT = "Weigh {name}"
+EDIT_WEIGHTS_RESET = "Weights of the database"
 
 # Control panel
 SPEECH = "SPEECH"
@@ -98,6 +100,26 @@ OPEN_DATABASE = "Open database…"
 ENGINE_NAME = "Constrained search"
 ENGINE_FACTS = "by relaxation, on the processor\nfor exhaustive search: {backend}"
 BACKEND_WAITING = "no compute backend yet"
+WEIGHTS = "WEIGHTS"
+WEIGHTS_TIP = "What the search minds most; it answers while you drag"
+WEIGHTS_RESET = "Reset"
+WEIGHTS_RESET_TIP = "Take the weights of the database again"
+WEIGHTS_TUNED = "tuned on {sentences} sentences"
+WEIGHTS_UNTUNED = "untuned · see efase tune"
+WEIGHTS_OWN = "of this project"
+WEIGHT_NAMES = {
+    "pnt": ("penalty", "PNT: the unit of the penalties below, against how joins look"),
+    "alpha1": ("no predecessor", "α1: a motion node that nothing was captured before, in PNT"),
+    "alpha2": ("smooth blend", "α2: how a blend of the two motion nodes bends"),
+    "alpha3": ("position", "α3: how far positions are apart where nodes join, against velocities"),
+    "alpha4": ("like phoneme", "α4: the share of the penalty for a phoneme that looks alike"),
+    "alpha5": ("phoneme", "α5: another phoneme, in PNT"),
+    "alpha6": ("emotion", "α6: another emotion, in PNT"),
+    "context_before": ("phoneme before", "Another phoneme before, in PNT; not in the paper"),
+    "context_after": ("phoneme after", "Another phoneme after, in PNT; not in the paper"),
+    "context_decay": ("context reach", "What each further phoneme counts, against the nearer one; not in the paper"),
+    "duration": ("length", "A node of another length than its phoneme, in PNT; not in the paper"),
+}
 SYNTHESISE = "Synthesise"
 SYNTHESISE_NEEDS_SPEECH = "Choose speech first"
 SYNTHESISE_NEEDS_DATABASE = "Open a motion database first"

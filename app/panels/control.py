@@ -24,6 +24,7 @@ from app.authoring import Authoring, whole_emotion
 from app.icons import dot
 from app.loading import SpeechRequest
 from app.panels.pane import ElidedLabel, label
+from app.panels.weights import WeightsPage
 from app.theme import STEP, theme
 from core.document.change import Change
 from core.document.document import FaceChoice
@@ -234,6 +235,8 @@ class ControlPanel(QWidget):
         self.engine = label(texts.BACKEND_WAITING)
         self.engine.setWordWrap(True)
         self._column.addWidget(self.engine)
+        self.weights = WeightsPage(self._authoring)
+        self._column.addWidget(self.weights)
 
     def _made_bottom(self) -> QWidget:
         bottom = QWidget()
@@ -315,7 +318,7 @@ class ControlPanel(QWidget):
             self.cost.setText("")
             self.slot_cost.setText("")
             return
-        path, unit = document.answer.path, document.database.weights.pnt
+        path, unit = document.answer.path, (document.weights or document.database.weights).pnt
         self.cost.setText((texts.COST_PROVED if path.is_optimal else texts.COST).format(cost=path.cost / unit))
         if slot is None or slot >= len(path.nodes):
             self.slot_cost.setText("")

@@ -7,13 +7,15 @@ from dataclasses import dataclass, field, fields, replace
 from types import MappingProxyType
 from typing import Any, Self
 
-from core.document.change import NOTHING, Change
+from core.document.change import ANSWER, NOTHING, Change
 from core.document.document import EMPTY, Document, ProjectState
 from core.document.parts import AlignedSpeech, DatabaseReference, FaceChoice, OutputSettings, ReferenceVideo
 from core.errors import UserFacingError
 from core.motion.curation import Removal
 from core.motion.database import MotionDatabase
+from core.search.weights import SearchWeights
 from core.speech.emotion import EmotionModifier
+from core.synthesis.polish import Polish
 
 # Two of these are the same only if they are one object; to compare their arrays would take long.
 _BY_IDENTITY = ("database", "speech")
@@ -69,8 +71,8 @@ class FieldEdit:
             setattr(document, name, value)
         # with as many slots, the motion from before may be looked at until the search answers
         if self.change & (Change.SPEECH | Change.NODES) or _n_slots(document) != n_slots:
-            document.answer = document.prices = document.breakdown = None
-            return self.change | Change.PATH | Change.PRICES
+            document.forget_answer()
+            return self.change | ANSWER
         return self.change
 
 
@@ -174,6 +176,17 @@ class SetFace(FieldEdit):
         return cls.setting(document, "Choose face", Change.FACE, face=face)
 
 
+class SetWeights(FieldEdit):
+    """Search under other weights; None are the database's own."""
+
+    @classmethod
+    def on(
+        cls, document: Document, weights: SearchWeights | None, label: str, gesture: int | None = None
+    ) -> SetWeights:
+        """Return the edit for ``document`` as it is now."""
+        return cls.setting(document, label, Change.WEIGHTS, gesture=gesture, weights=weights)
+
+
 class SetReferenceVideo(FieldEdit):
     """Show another film of the actor, none, or the same at another offset."""
 
@@ -195,6 +208,15 @@ class SetOutput(FieldEdit):
         return cls.setting(document, label, Change.OUTPUT, output=output)
 
 
+class SetPolish(FieldEdit):
+    """Lay other gains over the motion; those of one drag become one edit."""
+
+    @classmethod
+    def on(cls, document: Document, polish: Polish, label: str, gesture: int | None = None) -> SetPolish:
+        """Return the edit for ``document`` as it is now."""
+        return cls.setting(document, label, Change.POLISH, gesture=gesture, polish=polish)
+
+
 class RestoreVersion(FieldEdit):
     """Make the project what it was in a named version; nothing is lost, for it undoes."""
 
@@ -203,7 +225,7 @@ class RestoreVersion(FieldEdit):
         "database_reference": Change.NODES | Change.CLUSTERS, "modifiers": Change.EMOTIONS, "pins": Change.CONSTRAINTS,
         "locks": Change.CONSTRAINTS, "removed_here": Change.CURATION, "kept": Change.CURATION,
         "weights": Change.WEIGHTS, "face": Change.FACE, "reference_video": Change.REFERENCE_VIDEO,
-        "output": Change.OUTPUT,
+        "output": Change.OUTPUT, "polish": Change.POLISH,
     })  # fmt: skip
 
     @classmethod
