@@ -93,7 +93,8 @@ def tune(
     """
     settings = settings or TuningSettings()
     space = TuningSpace(untuned, problem.nodes, settings.with_further)
-    run = _Run(problem, space, workers, journal or TuningJournal(None), settings.budget, progress, limit_s)
+    journal = TuningJournal(None) if journal is None else journal
+    run = _Run(problem, space, workers, journal, settings.budget, progress, limit_s)
     n_sentences = len(problem.sentences)
     starts = space.random_points(np.random.default_rng(settings.seed), settings.starts)
     starts[0] = space.start

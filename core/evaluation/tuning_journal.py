@@ -46,6 +46,8 @@ class TuningJournal:
         whole = 0
         with path.open("rb") as file:
             for number, line in enumerate(file):
+                if not line.endswith(b"\n"):
+                    break
                 try:
                     entry = json.loads(line)
                     if number == 0 and entry["format"] != _FORMAT:
@@ -53,8 +55,6 @@ class TuningJournal:
                     if number:
                         self._keep(entry["point"], entry["exact"], entry["sentences"], entry["errors"])
                 except (ValueError, KeyError, TypeError):
-                    break
-                if not line.endswith(b"\n"):
                     break
                 whole += len(line)
         return whole
