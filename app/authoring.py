@@ -182,7 +182,7 @@ class Authoring(Editing):
     # Reactions
 
     def _on_document_changed(self, change: Change, _origin: object) -> None:
-        if change & Change.PATH:
+        if change & Change.MOTION:
             self.film.renew()
         if change & Change.OUTPUT:
             output = self.document.output

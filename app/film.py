@@ -95,7 +95,7 @@ class FilmComposer(QObject):
         settings = VideoSettings(
             FRAME_RATES[self.fps_name], width, height, style, head=self._head_moves, gaze=self._head_moves
         )
-        request = FilmRequest(answer.motion, speech.audio, speech.transcript, self._rig, settings, path)
+        request = FilmRequest(self._document.motion, speech.audio, speech.transcript, self._rig, settings, path)
         self._jobs.start("film", texts.COMPOSING, request, compose_apart, self._on_composed, self._on_failed)
 
     def _compose_unasked(self) -> None:

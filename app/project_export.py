@@ -18,6 +18,7 @@ from core.face.default_face import FaceUnavailable
 from core.media.video import FRAME_RATES
 from core.progress import SILENT, Progress
 from core.search.engine import SearchEngine
+from core.synthesis.polish import polished
 
 
 @dataclass(frozen=True)
@@ -59,6 +60,8 @@ def run(job: ExportJob, progress: Progress = SILENT) -> dict[str, object]:
     engine = SearchEngine(opened.database, opened.engine.kernels, content.weights)
     answer = engine.synthesise(document.speech_input(), progress.part(0.2, 0.5))
 
+    motion = polished(answer.motion, content.polish)
+
     began = time.perf_counter()
     warnings = [sentence for sentence in (database_differences(content, opened), *opened.trouble[:1]) if sentence]
     warnings += answer.warnings
@@ -77,7 +80,7 @@ def run(job: ExportJob, progress: Progress = SILENT) -> dict[str, object]:
             video = replace(video, style="markers")
     for i, path in enumerate(job.outputs):
         stage = progress.part(0.55 + 0.45 * i / len(job.outputs), 0.55 + 0.45 * (i + 1) / len(job.outputs))
-        export(answer.motion, audio, rig, path, video, stage, content.transcript)
+        export(motion, audio, rig, path, video, stage, content.transcript)
     return {
         "phonemes": phoneme_rows(content.transcript, answer, opened.database.nodes),
         "cost": answer.path.cost, "optimal": answer.path.is_optimal, "text": content.text,

@@ -20,6 +20,8 @@ from core.search.engine import SearchAnswer, SearchEngine
 from core.search.weights import SearchWeights
 from core.speech.loudness import levels_db
 from core.synthesis.engine import SpeechInput
+from core.synthesis.marker_motion import MarkerMotion
+from core.synthesis.polish import Polish, polished
 from core.synthesis.pose_tracks import PoseTracks
 
 
@@ -63,6 +65,9 @@ class Solving(QObject):
 
     def _on_document_changed(self, change: Change, _origin: object) -> None:
         speech = self._document.speech
+        if change & Change.POLISH and self._document.answer is not None:
+            request = (self._document.answer.motion, self._document.polish)
+            self._jobs.start("polish", "", request, _polish, self._document.show_motion)
         if change & ASKED_OF_THE_SEARCH:
             self._jobs.cancel("prices")
             self._jobs.cancel("search")
@@ -76,14 +81,15 @@ class Solving(QObject):
             return
         self._jobs.cancel("prices")
         search = self._searches[database.content_hash]
-        request = _SolveRequest(search, speech, document.weights, document.speech.audio)
+        request = _SolveRequest(search, speech, document.weights, document.speech.audio, document.polish)
         self._jobs.start("search", texts.SYNTHESISING, request, _solve, self._on_solved)
 
-    def _on_solved(self, solved: tuple[SearchAnswer, PoseTracks]) -> None:
-        answer, self._tracks = solved
+    def _on_solved(self, solved: tuple[SearchAnswer, MarkerMotion, PoseTracks]) -> None:
+        answer, motion, self._tracks = solved
+        self._jobs.cancel("polish")
         before = self._document.answer
         self.changed_slots = () if before is None else changed_slots(before.path, answer.path)
-        self._document.show_answer(answer)
+        self._document.show_answer(answer, motion)
         self.solved.emit(answer)
         search = self._searches[self._document.database.content_hash]
         self._jobs.start("prices", "", search, _price, self._on_priced)
@@ -107,14 +113,19 @@ class _SolveRequest:
     speech: SpeechInput
     weights: SearchWeights | None
     audio: Audio
+    polish: Polish
 
 
-def _solve(request: _SolveRequest, progress: Progress) -> tuple[SearchAnswer, PoseTracks]:
+def _solve(request: _SolveRequest, progress: Progress) -> tuple[SearchAnswer, MarkerMotion, PoseTracks]:
     answer = request.search.answer(request.speech, request.weights, progress)
     motion = answer.motion
     loudness_db = _levels_db(request.audio)
     tracks = PoseTracks.of(request.speech.transcript, motion.rate_hz, len(motion.positions), loudness_db)
-    return answer, tracks
+    return answer, polished(motion, request.polish), tracks
+
+
+def _polish(request: tuple[MarkerMotion, Polish], _progress: Progress) -> MarkerMotion:
+    return polished(*request)
 
 
 @lru_cache(maxsize=2)

@@ -153,7 +153,7 @@ class ExportDialog(QDialog):
         )  # fmt: skip
         path = Path(self.path.text()).expanduser()
         return FilmRequest(
-            document.answer.motion, document.speech.audio, document.speech.transcript, authoring.rig, video, path
+            document.motion, document.speech.audio, document.speech.transcript, authoring.rig, video, path
         )
 
     def _span_s(self) -> tuple[float, float] | None:

@@ -77,8 +77,7 @@ class MotionPane(Pane):
     @property
     def motion(self) -> MarkerMotion | None:
         """The motion on show."""
-        answer = self._authoring.document.answer
-        return None if answer is None else answer.motion
+        return self._authoring.document.motion
 
     @property
     def frame(self) -> int:
@@ -96,7 +95,7 @@ class MotionPane(Pane):
             self.transport.set_duration(0.0 if document.speech is None else document.speech.transcript.duration_s)
         if change & (Change.SPEECH | Change.NODES):
             self._find_capture()
-        if change & (Change.PATH | Change.ALIGNMENT | Change.NODES):
+        if change & (Change.MOTION | Change.ALIGNMENT | Change.NODES):
             self.plot.show_motion(self.motion, self.captured)
             if self.motion is None:
                 self._say_what_is_next()

@@ -12,7 +12,9 @@ class Change(Flag):
     NODES, CLUSTERS : another database; CURATION : which of its motion nodes are removed
     CONSTRAINTS : pins and locks
     OUTPUT : frame rate, first frame, head motion
-    PATH : the motion on show; PRICES : what alternatives to it would cost
+    POLISH : the layer over the motion
+    PATH : what the search found; PRICES : what alternatives to it would cost
+    MOTION : the motion on show, polish included; it comes with PATH
     """
 
     SPEECH = auto()
@@ -26,11 +28,16 @@ class Change(Flag):
     FACE = auto()
     REFERENCE_VIDEO = auto()
     OUTPUT = auto()
+    POLISH = auto()
     PATH = auto()
+    MOTION = auto()
     PRICES = auto()
 
 
 NOTHING = Change(0)
+
+# Everything that hangs on what the search found.
+ANSWER = Change.PATH | Change.MOTION | Change.PRICES
 
 # Whatever of this changes, the path that is shown is no longer the best one.
 ASKED_OF_THE_SEARCH = (

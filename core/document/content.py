@@ -31,6 +31,7 @@ from core.motion.database import MotionDatabase
 from core.search.weights import SearchWeights
 from core.speech.emotion import EmotionModifier
 from core.speech.transcript import Transcript
+from core.synthesis.polish import NO_POLISH, Polish
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,7 @@ class ProjectContent:
     face: FaceChoice | None = DEFAULT_FACE
     reference_video: ReferenceVideo | None = None
     output: OutputSettings = DEFAULT_OUTPUT
+    polish: Polish = NO_POLISH
     database: DatabaseReference | None = None
     view: View = field(default_factory=View)
     others: Mapping[str, Any] = field(default_factory=lambda: EMPTY)
@@ -67,7 +69,8 @@ class ProjectContent:
             text="" if speech is None else speech.text,
             modifiers=document.modifiers, pins=document.pins, locks=document.locks,
             removed_here=document.removed_here, kept=document.kept, weights=document.weights, face=document.face,
-            reference_video=document.reference_video, output=document.output, database=document.database_reference,
+            reference_video=document.reference_video, output=document.output, polish=document.polish,
+            database=document.database_reference,
             view=View() if view is None else View(view.slot, view.playhead_s, view.map_phone), others=others,
         )  # fmt: skip
 
@@ -79,7 +82,7 @@ class ProjectContent:
         return ProjectState(
             database=database, database_reference=self.database, speech=speech, modifiers=self.modifiers,
             pins=self.pins, locks=self.locks, removed_here=self.removed_here, kept=self.kept, weights=self.weights,
-            face=self.face, reference_video=self.reference_video, output=self.output,
+            face=self.face, reference_video=self.reference_video, output=self.output, polish=self.polish,
         )  # fmt: skip
 
     def to_json(self) -> str:
@@ -104,6 +107,8 @@ class ProjectContent:
             "face": None if self.face is None else asdict(self.face),
             "reference_video": None if self.reference_video is None else asdict(self.reference_video),
             "output": asdict(self.output),
+            "polish": {"articulation": self.polish.articulation, "expression": self.polish.expression,
+                       "curves": {region: list(keys) for region, keys in sorted(self.polish.curves.items())}},
             "database": None if self.database is None else asdict(self.database),
             "view": asdict(self.view),
         }, allow_nan=False)  # fmt: skip
@@ -146,6 +151,7 @@ class ProjectContent:
             reference_video=door.optional(entries.pop("reference_video", None), lambda e: ReferenceVideo(
                 door.name_text(e["path"]), door.number(e["offset_s"], -door.FARTHEST_S, door.FARTHEST_S))),
             output=door.output_settings(entries.pop("output", {})),
+            polish=door.polish(entries.pop("polish", {})),
             database=door.optional(entries.pop("database", None), lambda e: DatabaseReference(
                 *(door.name_text(e[key]) for key in ("name", "content_hash")),
                 door.optional(e.get("path"), door.name_text))),

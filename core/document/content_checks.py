@@ -14,6 +14,7 @@ from core.motion.curation import Removal
 from core.speech.emotion import EMOTION_INDEX, EmotionModifier
 from core.speech.phoneme import PHONEME_INDEX
 from core.speech.transcript import PhonemeUtterance, Transcript, WordUtterance
+from core.synthesis.polish import REGIONS, STRONGEST, Polish
 
 _LONGEST_NAME, _LONGEST_TEXT = 1 << 15, 1 << 22
 _MOST_UTTERANCES, MOST_SPANS, MOST_NODES = 100_000, 100_000, 1_000_000
@@ -132,6 +133,19 @@ def output_settings(entry: dict) -> OutputSettings:
     require(rate in FRAME_RATES, "its frame rate is not on offer")
     start_frame = whole(entry.get("start_frame", 0), 0, _HIGHEST_FRAME)
     return OutputSettings(rate, start_frame, of_type(entry.get("head_moves", True), bool))
+
+
+def polish(entry: dict) -> Polish:
+    """Return the layer over the motion."""
+    curves = {}
+    for region, keys in of_type(entry.get("curves", {}), dict).items():
+        require(region in REGIONS, "a region of the face is not known")
+        read = [
+            (number(at_s, 0.0, FARTHEST_S), number(gain, 0.0, STRONGEST)) for at_s, gain in listed(keys, MOST_SPANS)
+        ]
+        curves[region] = tuple(sorted(read))
+    gains = (number(entry.get(name, 1.0), 0.0, STRONGEST) for name in ("articulation", "expression"))
+    return Polish(*gains, MappingProxyType(curves))
 
 
 def view_entry(entry: dict, n_slots: int) -> View:

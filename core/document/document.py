@@ -10,7 +10,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 from psygnal import Signal
 
-from core.document.change import NOTHING, Change
+from core.document.change import ANSWER, NOTHING, Change
 from core.document.parts import (
     DEFAULT_FACE,
     DEFAULT_OUTPUT,
@@ -26,6 +26,8 @@ from core.search.engine import SearchAnswer
 from core.search.weights import SearchWeights
 from core.speech.emotion import EmotionModifier
 from core.synthesis.engine import SpeechInput
+from core.synthesis.marker_motion import MarkerMotion
+from core.synthesis.polish import NO_POLISH, Polish
 
 EMPTY: Mapping = MappingProxyType({})
 
@@ -61,6 +63,7 @@ class ProjectState:
     face: FaceChoice | None = DEFAULT_FACE
     reference_video: ReferenceVideo | None = None
     output: OutputSettings = DEFAULT_OUTPUT
+    polish: Polish = NO_POLISH
 
 
 class Document:
@@ -77,7 +80,9 @@ class Document:
     removed_here : nodes that only this project removes; kept : nodes that it uses although the list removes them
     weights : of the search; None for the database's own
     face : None for markers alone
-    answer : the motion that is shown, or None; until a new search answers it may be the one from before an edit
+    polish : the layer over the motion
+    answer : what the search found, or None; until a new search answers it may be the one from before an edit
+    motion : the motion on show: that of ``answer`` under the polish, or None
     prices : float64, shape (n_slots, n_nodes), what forcing a node into a slot would add to the cost of ``answer``, in
         the unit of COST; None until they are known
     breakdown : cost of each slot of ``answer`` by term (`core.search.session.SearchSession.breakdown`), or None
@@ -99,7 +104,9 @@ class Document:
         self.face = face
         self.reference_video: ReferenceVideo | None = None
         self.output = DEFAULT_OUTPUT
+        self.polish = NO_POLISH
         self.answer: SearchAnswer | None = None
+        self.motion: MarkerMotion | None = None
         self.prices: np.ndarray | None = None
         self.breakdown: Sequence[Mapping[str, float]] | None = None
         self._names: tuple[MotionDatabase | None, frozenset[str]] = (None, frozenset())
@@ -114,11 +121,23 @@ class Document:
         """Undo ``edit`` and tell the views once."""
         self._tell(edit.undo(self), origin)
 
-    def show_answer(self, answer: SearchAnswer | None, origin: object = None) -> None:
-        """Take what a search found for the document as it is now; its prices are still to come."""
+    def show_answer(self, answer: SearchAnswer, motion: MarkerMotion) -> None:
+        """Take what a search found for the document as it is now, and its motion under the polish.
+
+        Its prices are still to come.
+        """
         if answer is not self.answer:
-            self.answer, self.prices, self.breakdown = answer, None, None
-            self._tell(Change.PATH | Change.PRICES, origin)
+            self.answer, self.motion, self.prices, self.breakdown = answer, motion, None, None
+            self._tell(Change.PATH | Change.MOTION | Change.PRICES, None)
+
+    def show_motion(self, motion: MarkerMotion) -> None:
+        """Take the motion of the same answer under another polish."""
+        self.motion = motion
+        self._tell(Change.MOTION, None)
+
+    def forget_answer(self) -> None:
+        """Show no motion; whoever asks tells the views."""
+        self.answer = self.motion = self.prices = self.breakdown = None
 
     def show_prices(self, prices: np.ndarray | None, breakdown: Sequence[Mapping[str, float]] | None) -> None:
         """Take what the alternatives to the motion on show would cost, and what its slots cost by term."""
@@ -136,7 +155,7 @@ class Document:
         for part in fields(ProjectState):
             setattr(self, part.name, getattr(state, part.name))
         self.shared_removals = EMPTY
-        self.answer = self.prices = self.breakdown = None
+        self.forget_answer()
         everything = NOTHING
         for change in Change:
             everything |= change
@@ -146,8 +165,8 @@ class Document:
         """Take the database that the project refers to, once it was found."""
         self.database, self.database_reference = database, DatabaseReference.to(database)
         self.shared_removals = MappingProxyType(dict(shared))
-        self.answer = self.prices = self.breakdown = None
-        self._tell(Change.NODES | Change.CLUSTERS | Change.CURATION | Change.PATH | Change.PRICES, None)
+        self.forget_answer()
+        self._tell(Change.NODES | Change.CLUSTERS | Change.CURATION | ANSWER, None)
 
     def state(self) -> ProjectState:
         """Return all that belongs to the project."""

@@ -77,6 +77,9 @@ class Polish:
         return smooth(np.clip(times_s, at_s[0], at_s[-1]))
 
 
+NO_POLISH = Polish()
+
+
 def region_weights(markers: MarkerSet) -> dict[str, np.ndarray]:
     """Return how much each marker belongs to each region, float64, shape (n_markers,), 0..1; together at most 1.
 

@@ -20,6 +20,7 @@ from core.document.edits import (
     SetEmotion,
     SetFace,
     SetOutput,
+    SetPolish,
     SetReferenceVideo,
     SetSpeech,
 )
@@ -34,6 +35,7 @@ from core.speech.emotion import EMOTIONS
 from core.speech.emotion_painting import erased, painted
 from core.speech.phoneme import PHONEMES
 from core.speech.transcript import PhonemeUtterance, Transcript, WordUtterance
+from core.synthesis.polish import REGIONS
 
 RATE_HZ = 8000
 
@@ -74,6 +76,14 @@ def random_edit(document: Document, chance: random.Random) -> Edit | None:
         lambda: SetFace.on(document, chance.choice((None, FaceChoice("ben"), FaceChoice("a.obj", "a.csv")))),
         lambda: SetReferenceVideo.on(document, ReferenceVideo("actor.mp4", chance.uniform(-1, 1)), 3),
         lambda: SetOutput.on(document, replace(document.output, start_frame=chance.randrange(100))),
+        lambda: SetPolish.on(
+            document,
+            replace(document.polish, expression=chance.uniform(0, 3)).with_curve(
+                chance.choice(REGIONS), tuple((float(k), chance.uniform(0, 3)) for k in range(chance.randrange(4)))
+            ),
+            "Polish",
+            chance.choice((None, 4)),
+        ),
         lambda: FieldEdit.setting(
             document, "Weigh", Change.WEIGHTS, weights=chance.choice((None, SearchWeights(pnt=chance.uniform(1, 5e4))))
         ),

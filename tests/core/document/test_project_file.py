@@ -232,7 +232,7 @@ def test_a_newer_major_version_is_refused(tmp_path):
 def test_what_a_newer_minor_version_wrote_is_kept(tmp_path):
     path = tmp_path / "a.efase"
     project = ProjectFile.create(path)
-    entries = {**json.loads(ProjectContent(text="said").to_json()), "polish": {"jaw": [1, 2.5, None]}}
+    entries = {**json.loads(ProjectContent(text="said").to_json()), "lights": {"key": [1, 2.5, None]}}
     project.save(ProjectContent.from_json(json.dumps(entries)))
     project.close()
     with closing(sqlite3.connect(path)) as connection, connection:
@@ -242,7 +242,7 @@ def test_what_a_newer_minor_version_wrote_is_kept(tmp_path):
     project.save(replace(project.content, text="said otherwise"))
     project.close()
     again = ProjectFile.open(path)
-    assert again.content.others["polish"] == {"jaw": [1, 2.5, None]}
+    assert again.content.others["lights"] == {"key": [1, 2.5, None]}
     assert sqlite_file.version_of(again._connection) == (1, 9)
     again.close()
 
@@ -336,6 +336,9 @@ def _entries() -> dict:
         lambda e: e.__setitem__("sound", None),
         lambda e: e.__setitem__("face", {"name": "x" * 100_000}),
         lambda e: e.__setitem__("output", {"frame_rate": "31"}),
+        lambda e: e.__setitem__("polish", {"articulation": 99}),
+        lambda e: e.__setitem__("polish", {"curves": {"nose": []}}),
+        lambda e: e.__setitem__("polish", {"curves": {"lips": [[0, -1]]}}),
         lambda e: e.__setitem__("output", {"start_frame": 1e300}),
         lambda e: e.__setitem__("view", {"playhead_s": True}),
         lambda e: e.__setitem__("kept", {"a": 1}),
