@@ -81,9 +81,11 @@ def kill_at_random(folder: Path, n_kills: int) -> None:
         path = folder / f"killed-{seed}.efase"
         ProjectFile.create(path).close()
         editor = Editor(path, seed)
-        editor.wait_for(chance.randrange(1, 30))
-        time.sleep(chance.uniform(0.0, 0.01))
-        editor.kill()
+        try:
+            editor.wait_for(chance.randrange(1, 30))
+            time.sleep(chance.uniform(0.0, 0.01))
+        finally:
+            editor.kill()
         number, content, _ = state_of(path)
         assert number >= editor.confirmed
         assert content == editor.states[number]
