@@ -48,13 +48,23 @@ def _recording(rng: np.random.Generator, s: int) -> Recording:
 
 
 @pytest.fixture(scope="session")
-def database_path(tmp_path_factory):
-    rng = np.random.default_rng(7)
-    names, rest = _markers()
-    groups = {"upper_lip": ("lip_up",), "lower_lip": ("lip_low",), "lips": ("lip_up", "lip_low")}
-    corpus = Corpus("tiny", [_recording(rng, s) for s in range(8)], names, groups, {}, rest, synthetic=True)
+def tiny_corpus():
+    """Return a function that makes the corpus, some sentences held out."""
+
+    def make(held_out=None) -> Corpus:
+        rng = np.random.default_rng(7)
+        names, rest = _markers()
+        groups = {"upper_lip": ("lip_up",), "lower_lip": ("lip_low",), "lips": ("lip_up", "lip_low")}
+        recordings = [_recording(rng, s) for s in range(8)]
+        return Corpus("tiny", recordings, names, groups, {}, rest, synthetic=True, held_out=held_out or {})
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def database_path(tmp_path_factory, tiny_corpus):
     path = tmp_path_factory.mktemp("database") / "tiny.h5"
-    build_database(corpus, path, BuildSettings(rate_hz=60.0))
+    build_database(tiny_corpus(), path, BuildSettings(rate_hz=60.0))
     return path
 
 
