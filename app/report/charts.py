@@ -11,7 +11,9 @@ import numpy as np
 
 ACCENT, INK, PALE, GRID = "#0f6c7a", "#3b4450", "#8a94a1", "#e6e9ed"
 _DASHES = {"solid": "", "dashed": ' stroke-dasharray="6 4"', "dotted": ' stroke-dasharray="2 4"'}
-_MARGIN = (58, 14, 34, 44)  # left, right, top, bottom
+_MARGIN = (58, 14, 42, 44)  # left, right, top, bottom
+# Where the name of a spot may stand, best first: offset in pixels, and which end of the name is there.
+_LABEL_PLACES = [(9, -4 + 14 * n, "start") for n in (0, -1, 1)] + [(-9, -4 + 14 * n, "end") for n in (0, -1, 1, 2, -2)]
 _FONT = 'font-family="system-ui, sans-serif" font-size="12"'
 
 
@@ -92,7 +94,7 @@ def line_chart(
     """Draw lines with a legend.
 
     labels : of the x and the y axis, with their units
-    marks : spans of x with a name each, written along the top where there is room (phones)
+    marks : spans of x with a name each, written above where there is room (phones)
     """
     xs, ys = (np.concatenate([getattr(line, axis) for line in lines]) for axis in "xy")
     plane = _Plane(size, (float(xs.min()), float(xs.max())), rounded_span(ys.min(), ys.max()), labels)
@@ -101,7 +103,7 @@ def line_chart(
         left, right = plane.x(start), plane.x(stop)
         plane.parts.append(f'<path d="M{left:.1f} {bottom}V{top}" stroke="{GRID}"/>')
         if right - left >= 7 * len(name):
-            plane.text((left + right) / 2, top + 8, name, "middle", PALE, ' font-size="10"')
+            plane.text((left + right) / 2, top - 5, name, "middle", PALE, ' font-size="10"')
     for line in lines:
         points = " ".join(f"{plane.x(x):.1f},{plane.y(y):.1f}" for x, y in zip(line.x, line.y))
         plane.parts.append(
@@ -133,19 +135,22 @@ def spot_chart(
         f'<rect x="{left}" y="{upper:.1f}" width="{width}" height="{lower - upper:.1f}" fill="{ACCENT}" '
         f'fill-opacity="0.09"/>'
     )
-    plane.text(plane.x_px[1] - 6, upper + 14, band[2], "end", ACCENT)
-    taken: list[tuple[float, float]] = []
+    plane.text(plane.x_px[0] + 8, upper + 14, band[2], "start", ACCENT)
+    taken = [(plane.x(s.x) - 6, plane.x(s.x) + 6, plane.y(s.y) - 6, plane.y(s.y) + 6) for s in spots]
     for spot in sorted(spots, key=lambda s: s.x):
         x, y = plane.x(spot.x), plane.y(spot.y)
         fill = "#ffffff" if spot.hollow else spot.colour
         plane.parts.append(
             f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5.5" fill="{fill}" stroke="{spot.colour}" stroke-width="2"/>'
         )
-        label_y = y - 5
-        while any(abs(label_y - other_y) < 13 and abs(x - other_x) < 110 for other_x, other_y in taken):
-            label_y -= 13
-        taken.append((x, label_y))
-        plane.text(x + 8, label_y, spot.name, "start", INK)
+        width = 6.6 * len(spot.name)
+        for dx, dy, anchor in _LABEL_PLACES:
+            left = x + dx if anchor == "start" else x + dx - width
+            box = (left, left + width, y + dy - 10, y + dy + 3)
+            if not any(box[0] < b[1] and b[0] < box[1] and box[2] < b[3] and b[2] < box[3] for b in taken):
+                break
+        taken.append(box)
+        plane.text(x + dx, y + dy, spot.name, anchor, INK)
     return plane.svg(title)
 
 
