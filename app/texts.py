@@ -234,6 +234,19 @@ LANE_WAVE = "wave"
 LANE_WORDS = "words"
 LANE_PHONEMES = "phonemes"
 LANE_EMOTION = "emotion"
+LANE_CURVE = "{region} ×"
+POLISH = "POLISH"
+POLISH_TIP = "More or less of what the search found; it stays when the search answers anew"
+POLISH_RESET_TIP = "Take the whole layer away"
+POLISH_GAINS = {
+    "articulation": ("articulation", "How far mouth and jaw go with each sound; 1 is as found"),
+    "expression": ("expression", "How strong the slow part of the motion is, everywhere; 1 is as found"),
+}
+POLISH_CURVE = "curve of"
+POLISH_CURVE_TIP = "Whose curve the timeline shows: click there to set a key, drag it, double click takes it away"
+EDIT_POLISH = "Set {name}"
+EDIT_POLISH_RESET = "Reset the polish"
+EDIT_CURVE = "Shape the curve of the {region}"
 LANE_COST = "cost"
 LANE_PRICE = "price"
 TIMELINE = "TIMELINE"

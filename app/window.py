@@ -104,6 +104,7 @@ class MainWindow(AskingWindow):
         authoring.failed.connect(self.message.say)
         authoring.noted.connect(self.status.say)
         authoring.film.changed.connect(self._enable_save)
+        control.polish.region_chosen.connect(self.timeline.set_region)
         self.isomap.previewed.connect(self.preview.show_pick)
         self.preview.pin_asked.connect(self.isomap.pin_kept)
         control.speech_asked.connect(self.ask_speech)

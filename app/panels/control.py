@@ -24,6 +24,7 @@ from app.authoring import Authoring, whole_emotion
 from app.icons import dot
 from app.loading import SpeechRequest
 from app.panels.pane import ElidedLabel, label
+from app.panels.polish import PolishPage
 from app.panels.weights import WeightsPage
 from app.theme import STEP, theme
 from core.document.change import Change
@@ -237,6 +238,8 @@ class ControlPanel(QWidget):
         self._column.addWidget(self.engine)
         self.weights = WeightsPage(self._authoring)
         self._column.addWidget(self.weights)
+        self.polish = PolishPage(self._authoring)
+        self._column.addWidget(self.polish)
 
     def _made_bottom(self) -> QWidget:
         bottom = QWidget()

@@ -6,11 +6,12 @@ import math
 from dataclasses import fields, replace
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSlider, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QSlider
 
 from app import texts
 from app.authoring import Authoring
 from app.editing import new_gesture
+from app.panels.fold import FoldedPage
 from app.panels.pane import label
 from app.theme import STEP
 from core.document.change import Change
@@ -21,31 +22,17 @@ _DECADES = 2.0  # to either side of the database's weight
 _SHARES = ("alpha4", "context_decay")  # between 0 and 1; all others have no upper end
 
 
-class WeightsPage(QWidget):
+class WeightsPage(FoldedPage):
     """One slider a weight, in its logarithm about the database's; its left end is 0. Folded until it is wanted."""
 
     def __init__(self, authoring: Authoring) -> None:
-        super().__init__()
+        super().__init__(texts.WEIGHTS, texts.WEIGHTS_TIP, texts.WEIGHTS_RESET, texts.WEIGHTS_RESET_TIP)
         self._authoring = authoring
         self._gesture: int | None = None
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, STEP, 0, 0)
-        column.setSpacing(STEP // 2)
-        head = QHBoxLayout()
-        self.fold = QToolButton(text=texts.WEIGHTS, checkable=True, toolTip=texts.WEIGHTS_TIP)
-        self.fold.setArrowType(Qt.ArrowType.RightArrow)
-        self.fold.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
-        self.fold.toggled.connect(self.show_sliders)
-        head.addWidget(self.fold)
-        head.addStretch(1)
-        self.reset = QToolButton(text=texts.WEIGHTS_RESET, toolTip=texts.WEIGHTS_RESET_TIP)
         self.reset.clicked.connect(lambda: authoring.set_weights(None, texts.EDIT_WEIGHTS_RESET))
-        head.addWidget(self.reset)
-        column.addLayout(head)
         self.origin = label()
-        column.addWidget(self.origin)
-        self._body = QWidget()
-        grid = QGridLayout(self._body)
+        self.column.addWidget(self.origin)
+        grid = QGridLayout(self.body)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setVerticalSpacing(2)
         self.sliders: dict[str, QSlider] = {}
@@ -63,15 +50,9 @@ class WeightsPage(QWidget):
             grid.addWidget(slider, row, 1)
             grid.addWidget(value, row, 2)
             self.sliders[field.name], self._values[field.name] = slider, value
-        column.addWidget(self._body)
-        self._body.setVisible(False)
+        self.column.addWidget(self.body)
         authoring.document.changed.connect(self.on_document_changed)
         self.on_document_changed(Change.WEIGHTS, None)
-
-    def show_sliders(self, shown: bool) -> None:
-        """Unfold the page, or fold it."""
-        self.fold.setArrowType(Qt.ArrowType.DownArrow if shown else Qt.ArrowType.RightArrow)
-        self._body.setVisible(shown)
 
     def on_moved(self, name: str, place: int) -> None:
         """Search under what the slider of ``name`` says; a drag is one entry of the menu."""

@@ -9,6 +9,7 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QPainter, QPixmap
 
 from app import texts
+from app.panels.timeline.curve_lane import paint_curve
 from app.panels.timeline.lanes import paint_boxes, paint_changed, paint_emotions, paint_locks, paint_selection
 from app.panels.timeline.ruler import paint_ruler
 from app.panels.timeline.strips import paint_costs, paint_prices
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 _NAMES = {
     "wave": texts.LANE_WAVE, "words": texts.LANE_WORDS, "phonemes": texts.LANE_PHONEMES,
-    "emotion": texts.LANE_EMOTION, "cost": texts.LANE_COST, "price": texts.LANE_PRICE,
+    "emotion": texts.LANE_EMOTION, "curve": texts.LANE_CURVE, "cost": texts.LANE_COST, "price": texts.LANE_PRICE,
 }  # fmt: skip
 
 
@@ -51,6 +52,7 @@ def paint_lanes(timeline: Timeline, picture: QPixmap) -> None:
     paint_boxes(painter, lanes["phonemes"], scale, phones, view.slot, frozenset(document.pins))
     paint_changed(painter, lanes["phonemes"], scale, [slots[p] for p in timeline.authoring.changed_slots])
     paint_emotions(painter, lanes["emotion"], scale, document.modifiers, end_s)
+    paint_curve(painter, lanes["curve"], scale, document.polish, timeline.region, end_s)
     if document.breakdown is not None and len(document.breakdown) == len(slots):
         paint_costs(painter, lanes["cost"], scale, slots, document.breakdown)
     prices = document.next_best_prices
@@ -66,6 +68,7 @@ def _paint_names(painter: QPainter, timeline: Timeline, lanes: dict[str, QRectF]
     for key, name in _NAMES.items():
         area = lanes[key]
         painter.setPen(colour(theme().dim))
-        painter.drawText(QRectF(STEP + 4, area.top(), area.left(), area.height()), Qt.AlignmentFlag.AlignVCenter, name)
+        box = QRectF(STEP + 4, area.top(), area.left(), area.height())
+        painter.drawText(box, Qt.AlignmentFlag.AlignVCenter, name.format(region=timeline.region))
         painter.setPen(colour(theme().line, 0.6))
         painter.drawLine(0, round(area.top()), timeline.width(), round(area.top()))

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
 
 from app import texts
 from app.authoring import Authoring
+from app.panels.timeline.curve_lane import LANE, DragKey, remove_key
 from app.panels.timeline.gestures import DragBoundary, Gesture, PaintEmotion, Scrub
 from app.panels.timeline.lanes import TimeScale, paint_playhead
 from app.panels.timeline.phoneme_menu import PhonemeEditor, phoneme_menu
@@ -24,9 +25,10 @@ from core.media.video import FRAME_RATES
 from core.progress import Progress
 from core.speech.phoneme import PAU
 from core.speech.spectrogram import Spectrogram
+from core.synthesis.polish import REGIONS
 
 _NAMES_PX = 9 * STEP
-_HEIGHTS_PX = {"ruler": 22, "wave": 0, "words": 22, "phonemes": 24, "emotion": 32, "cost": 26, "price": 18}
+_HEIGHTS_PX = {"ruler": 22, "wave": 0, "words": 22, "phonemes": 24, "emotion": 32, "curve": 28, "cost": 26, "price": 18}
 _WAVE_PX, _LEAST_WAVE_PX = 56, 24
 _RIGHT_PX = 2 * STEP
 _ZOOM_PER_STEP = 1.25
@@ -53,6 +55,7 @@ class Timeline(QWidget):
         self.peaks: Peaks | None = None
         self.spectrogram: Spectrogram | None = None
         self.brush, self.snap, self.ruler = "happiness", PHONEMES, Ruler()
+        self.region = REGIONS[0]
         self._wants_spectrogram = False
         self._start_s, self._shown_s = 0.0, 1.0
         self._gesture: Gesture | None = None
@@ -142,6 +145,11 @@ class Timeline(QWidget):
         """Paint with another emotion; neutral erases."""
         self.brush = emotion
         self.brush_changed.emit(emotion)
+
+    def set_region(self, region: str) -> None:
+        """Show the polish curve of another region of the face."""
+        self.region = region
+        self.renew()
 
     def set_snap(self, snap: str) -> None:
         """Let strokes cover whole phonemes, whole words, or just what they touch."""
@@ -280,6 +288,8 @@ class Timeline(QWidget):
             self._gesture = DragBoundary(self, edge)
         elif self._lane_at(at.y()) == "emotion" and at.x() >= _NAMES_PX:
             self._gesture = PaintEmotion(self, at)
+        elif self._lane_at(at.y()) == LANE and at.x() >= _NAMES_PX:
+            self._gesture = DragKey(self, at)
         else:
             extends = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
             self._gesture = Scrub(self, at, extends)
@@ -291,7 +301,7 @@ class Timeline(QWidget):
             self._gesture.move(event.position())
             return
         on_edge = self._edge_at(event.position()) is not None
-        paints = self._lane_at(event.position().y()) == "emotion" and self.authoring.document.speech is not None
+        paints = self._lane_at(event.position().y()) in ("emotion", LANE) and self.authoring.document.speech is not None
         cursor = Qt.CursorShape.ArrowCursor
         if on_edge:
             cursor = Qt.CursorShape.SplitHCursor
@@ -308,10 +318,13 @@ class Timeline(QWidget):
             self.update()
 
     def mouseDoubleClickEvent(self, event) -> None:
-        """Rename a phoneme."""
+        """Rename a phoneme, or take a key of the curve away."""
         slot = self.slot_at(event.position().x())
-        if slot is not None and self._lane_at(event.position().y()) == "phonemes":
-            self._gesture = None
+        lane = self._lane_at(event.position().y())
+        self._gesture = None
+        if lane == LANE:
+            remove_key(self, event.position())
+        elif slot is not None and lane == "phonemes":
             self.rename(slot)
 
     def contextMenuEvent(self, event) -> None:

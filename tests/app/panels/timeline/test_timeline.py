@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
@@ -146,3 +147,38 @@ def test_costs_and_prices_come_with_the_motion(animated, qtbot):
     text = animated.timeline.description(2, "cost")
     assert "cost of this slot" in text
     assert "next best" in animated.timeline.description(2, "price")
+
+
+def test_keys_of_the_polish_curve_are_set_dragged_and_taken_away_and_undone(animated, qtbot):
+    document = animated.authoring.document
+    before = document.motion
+    QTest.mouseClick(animated.timeline, LEFT, pos=place(animated, "curve", 0.5, 0.95))
+    ((at_s, gain),) = document.polish.curves["lips"]
+    assert at_s == pytest.approx(0.5, abs=1.5 / animated.timeline.scale.px_per_s)
+    assert gain > 1.5
+    qtbot.waitUntil(lambda: document.motion is not before, timeout=WAIT_MS)
+    lips = document.motion.markers.group("lips")
+    rest = document.motion.markers.rest[lips]
+    moved, found = (np.abs(m.positions[:, lips] - rest).sum() for m in (document.motion, before))
+    assert moved > 1.3 * found
+    drag(animated, place(animated, "curve", at_s, 0.95), place(animated, "curve", 0.8, 0.3))
+    ((_, lower),) = document.polish.curves["lips"]
+    assert lower < 1.0
+    QTest.keyClick(animated, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert document.polish.curves["lips"] == ((at_s, gain),)
+    QTest.mouseDClick(animated.timeline, LEFT, pos=place(animated, "curve", at_s, gain / 2))
+    assert document.polish.changes_nothing
+
+
+def test_polish_stays_when_the_search_answers_anew(animated, qtbot):
+    document = animated.authoring.document
+    slider = animated.control.polish.sliders["expression"]
+    slider.setValue(25)
+    assert document.polish.expression == 0.5
+    qtbot.waitUntil(lambda: not animated.authoring.jobs.is_running("polish"), timeout=WAIT_MS)
+    QTest.keyClick(animated, Qt.Key.Key_3)
+    drag(animated, middle(animated, 1, "emotion", 0.95), middle(animated, 5, "emotion", 0.95))
+    solved_again(animated, qtbot)
+    assert document.polish.expression == 0.5
+    found, shown = (np.abs(m.displacements).mean() for m in (document.answer.motion, document.motion))
+    assert shown < 0.95 * found
