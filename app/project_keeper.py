@@ -19,13 +19,12 @@ from app.project_jobs import (
     open_project,
 )
 from app.settings import forget_project, last_project, remember_project, window_settings
-from core.document.change import Change
+from core.document.change import ANSWER, Change
 from core.document.content import ProjectContent
 from core.document.project_file import SUFFIX, ProjectFile
 from core.errors import UserFacingError
 
 _VIEW_AFTER_MS = 1000
-_NOT_KEPT = Change.PATH | Change.PRICES
 
 
 class ProjectKeeper(QObject):
@@ -196,7 +195,7 @@ class ProjectKeeper(QObject):
             self.file = None
 
     def _on_document_changed(self, change: Change, _origin: object) -> None:
-        if change & ~_NOT_KEPT:
+        if change & ~ANSWER:
             self.save()
 
     def _on_view_changed(self, *_: object) -> None:

@@ -59,8 +59,8 @@ class Versions(QObject):
             audio = speech.audio if same_sound else file.audio(content)
             same_database = document.database_reference == content.database
             state = content.state(audio, document.database if same_database else None)
-            if same_sound:  # the very object, so that what was made of the sound stays
-                state = replace(state, speech=replace(state.speech, audio=speech.audio))
+            if same_sound and (content.transcript, content.text) == (speech.transcript, speech.text):
+                state = replace(state, speech=speech)
             self._authoring.push(RestoreVersion.on(document, state, name, gesture))
             if not same_database:
                 self._keeper.find_database(content)

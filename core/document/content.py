@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from types import MappingProxyType
 from typing import Any
 
@@ -78,7 +78,7 @@ class ProjectContent:
         """Return what a document takes, with the sound and the database (None: it is missing) that are referred to."""
         speech = None
         if audio is not None and self.transcript is not None:
-            speech = Speech(replace(audio, path=self.sound.path), self.transcript, self.text)
+            speech = Speech(audio, self.transcript, self.text)
         return ProjectState(
             database=database, database_reference=self.database, speech=speech, modifiers=self.modifiers,
             pins=self.pins, locks=self.locks, removed_here=self.removed_here, kept=self.kept, weights=self.weights,

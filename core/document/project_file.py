@@ -22,7 +22,7 @@ from core.document.content import ProjectContent
 from core.document.content_checks import Unbelievable
 from core.document.project_lock import ProjectLock
 from core.errors import UserFacingError
-from core.media.audio import Audio, audio_from_bytes
+from core.media.audio import Audio, audio_from_kept
 from core.media.swap_in import swapped_in
 from core.sqlite_file import Damaged, FileKind, transaction
 
@@ -335,7 +335,8 @@ def _read_sound(connection: sqlite3.Connection, content: ProjectContent, path: P
     data = _sound_bytes(connection, content.sound.digest)
     if data is None:
         raise beyond_repair(path, "its sound is not what it was")
-    return audio_from_bytes(data, f"the sound of '{path.name}'")
+    was = content.sound.path
+    return audio_from_kept(data, f"the sound of '{path.name}'", None if was is None else Path(was))
 
 
 def _drop_unused_sounds(connection: sqlite3.Connection) -> None:

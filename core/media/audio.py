@@ -6,7 +6,7 @@ import hashlib
 import io
 import os
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import BinaryIO
@@ -90,6 +90,13 @@ def load_audio(path: str | Path) -> Audio:
 def audio_from_bytes(data: bytes, name: str = "the embedded sound") -> Audio:
     """Read sound from the bytes of an audio file, such as `encode_flac` makes; raises as `load_audio` does."""
     return _read(io.BytesIO(data), name, None)
+
+
+def audio_from_kept(data: bytes, name: str, path: Path | None) -> Audio:
+    """Inverse of `Audio.kept`, for sound that once came from ``path``; raises as `load_audio` does."""
+    audio = replace(audio_from_bytes(data, name), path=path)
+    audio.__dict__["kept"] = data  # another version of the encoder might make other bytes of it
+    return audio
 
 
 def _read(file: BinaryIO | bytes, name: str, path: Path | None) -> Audio:
