@@ -6,8 +6,6 @@ import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from app.demo import demo_database
 from app.report.evaluation import Measured, evaluation_figures, evaluation_page
 from app.report.page import number
@@ -134,16 +132,7 @@ def _answer(measured: Measured) -> dict[str, object]:
         "name": database.name, "synthetic": database.synthetic, "nodes": len(database.nodes),
         "content_hash": database.content_hash, "weights": database.weights.as_dict(),
     }  # fmt: skip
-    return _plain(answer)
-
-
-def _plain(value):
-    """JSON has no NaN: what could not be measured becomes null."""
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, float | np.floating):
-        return float(value) if np.isfinite(value) else None
-    return value
+    return answer
 
 
 def _write(folder: Path, measured: Measured, answer: dict[str, object]) -> None:

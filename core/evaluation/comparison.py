@@ -61,27 +61,21 @@ class Comparison:
     """One sentence of one engine beside its capture.
 
     synthesised : float64, like ``truth.positions``
-    n_slots, seconds : phonemes of the sentence, silences included, and what their synthesis took
+    seconds : what the synthesis took
     joins : roughness at phone boundaries, at the rate of the motion; None without such boundaries
     """
 
     truth: CapturedTruth
     synthesised: np.ndarray
-    n_slots: int
     seconds: float
     joins: Roughness | None
 
     @classmethod
     def of(cls, truth: CapturedTruth, motion: MarkerMotion, seconds: float) -> Comparison:
         """Bring ``motion`` to the frames of the capture, as `core.motion.resample` does."""
-        transcript, n_frames = truth.recording.transcript, len(truth.positions)
-        return cls(
-            truth,
-            resample(motion.positions, motion.rate_hz, truth.rate_hz, n_frames),
-            len(transcript.phonemes),
-            seconds,
-            measures.roughness_at_joins(motion.positions, transcript, motion.rate_hz),
-        )
+        synthesised = resample(motion.positions, motion.rate_hz, truth.rate_hz, len(truth.positions))
+        joins = measures.roughness_at_joins(motion.positions, truth.recording.transcript, motion.rate_hz)
+        return cls(truth, synthesised, seconds, joins)
 
 
 @dataclass(frozen=True)
@@ -94,7 +88,7 @@ class Scores:
         rate of video, if the capture is faster
     """
 
-    error_mm2: float
+    error_mm2: float | None
     lip_error_mm: float | None
     lip_gap_r: float | None
     closure_rate: float | None
@@ -131,7 +125,7 @@ def scores(pairs: Sequence[tuple[CapturedTruth, np.ndarray]]) -> Scores:
     n_closed = sum(c.captured for c in closed)
     ratios = [measures.variance_ratio(*zip(*found)) if found else None for found in tracks]
     return Scores(
-        float(np.mean(errors)) if errors else float("nan"),
+        float(np.mean(errors)) if errors else None,
         float(np.mean(lip_errors)) if lip_errors else None,
         float(np.mean(correlations)) if correlations else None,
         sum(c.synthesised for c in closed) / n_closed if n_closed else None,

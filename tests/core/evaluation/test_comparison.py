@@ -83,6 +83,14 @@ def test_frames_in_long_gaps_and_beyond_the_end_are_left_out(mouth_database):
     assert scores([(truth, wrong)]).error_mm2 == 0.0
 
 
+def test_a_sentence_that_was_lost_altogether_is_no_figure(mouth_database):
+    recording = mouth_database.held_out_recordings("test")[0]
+    lost = replace(recording, positions=np.full_like(recording.positions, np.nan))
+    truth = CapturedTruth.of(lost, mouth_database)
+    assert not truth.usable.any()
+    assert set(vars(scores([(truth, np.zeros_like(truth.positions))])).values()) == {None}
+
+
 def test_a_capture_without_lips_is_measured_without_them(truth):
     blind = replace(truth, markers=replace(truth.markers, groups={}, landmarks={}))
     found = scores([(blind, truth.positions + 1.0)])
