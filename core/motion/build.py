@@ -85,7 +85,9 @@ def build_database(
     if len(database.nodes) == 0:
         raise UserFacingError(f"The corpus '{corpus.name}' has no phoneme with motion, so there is nothing to search.")
     maps = make_maps(database, progress.part(0.3, 0.95))
-    database = replace(database, maps=maps, weights=default_weights(database.frames, database.nodes, database.rate_hz))
+    database = replace(
+        database, maps=maps, weights=default_weights(database.frames, database.nodes, database.rate_hz).in_context
+    )
     progress.step(0.95, "writing the database")
     audio = {r.sentence: _flac(r) for r in corpus.recordings if r.audio is not None}
     return _store(database, path, audio, held_out)

@@ -13,7 +13,7 @@ SILENCES = (*INTERPOLATIONS, CAPTURED)
 
 @dataclass(frozen=True)
 class SynthesisOptions:
-    """How paths are found and turned into motion. The defaults are what did best on the tuning part of GRID.
+    """How paths are found and turned into motion. The defaults did best on the tuning parts of GRID and the demo.
 
     n_paths : near-optimal paths that are blended; 1 is the best path alone
     surcharge : what each use of a motion node by an earlier path costs a later one, in PNT
@@ -25,11 +25,11 @@ class SynthesisOptions:
     emotion_strength : make mixed emotions by blending motions of the pure ones, and not only by choosing nodes
     """
 
-    n_paths: int = 8
+    n_paths: int = 6
     surcharge: float = 2.0
-    temperature: float = 20.0
+    temperature: float = 10.0
     silence: str = CAPTURED
-    jitter_window_s: float = 0.1
+    jitter_window_s: float = 0.0
     steady_sentences: bool = True
     lip_weight: float = 1.0
     emotion_strength: bool = True
@@ -45,8 +45,8 @@ class SynthesisOptions:
 
     @property
     def single(self) -> SynthesisOptions:
-        """The same with the best path alone."""
-        return replace(self, n_paths=1)
+        """The same with the best path alone; no mean takes out the jitter of its captures, so they are smoothed."""
+        return replace(self, n_paths=1, jitter_window_s=0.15)
 
 
 # Deng and Neumann (2008) as printed; with it go weights without context (`SearchWeights.as_printed`).

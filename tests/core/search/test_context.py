@@ -114,3 +114,12 @@ def test_the_search_stays_exact(random_motion, seed):
     assert ours.cost == theirs.cost and ours.is_optimal
     plain = TransitionCosts(costs.terms, weights.as_printed)
     assert find_path_by_relaxation(request, plain).cost < ours.cost
+
+
+def test_the_context_is_one_switch_away(random_motion):
+    frames, nodes = random_motion(6)
+    untuned = default_weights(frames, nodes, 120.0)
+    assert untuned == untuned.as_printed
+    assert untuned.in_context.context_before > 0 and untuned.in_context.duration > 0
+    values = {**untuned.in_context.as_dict(), "context_decay": untuned.context_decay}
+    assert SearchWeights.from_dict(values).as_printed == untuned
