@@ -189,10 +189,15 @@ class ProjectKeeper(QObject):
         self._let_go()
 
     def _let_go(self) -> None:
-        if self.file is not None:
-            self.save()
-            self.file.close()
-            self.file = None
+        if self.file is None:
+            return
+        self.save()
+        file, self.file = self.file, None
+        holds_nothing = file.content.sound is None and not file.versions()
+        file.close()
+        if holds_nothing and is_unnamed(file.path):
+            forget_project(self._settings, file.path)
+            file.path.unlink(missing_ok=True)
 
     def _on_document_changed(self, change: Change, _origin: object) -> None:
         if change & ~ANSWER:

@@ -1,0 +1,96 @@
+"""`efase export` and `efase PROJECT.efase`, where something is wrong."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from app import cli
+from core.document.content import ProjectContent
+from core.document.document import Document
+from core.document.edits import SetSpeech
+from core.document.parts import DatabaseReference
+from core.document.project_file import ProjectFile
+from core.motion.motion_files import read_motion
+from tests.core.document.random_edits import made_speech
+
+
+@pytest.fixture(autouse=True)
+def own_data(tmp_path, monkeypatch):
+    monkeypatch.setenv("EFASE_DATA_DIR", str(tmp_path / "data"))
+
+
+@pytest.fixture
+def efase(monkeypatch, capsys):
+    """Run the command in this process; returns (exit code, standard error)."""
+
+    def run(*words):
+        monkeypatch.setattr(sys, "argv", ["efase", *map(str, words)])
+        with pytest.raises(SystemExit) as stop:
+            cli.main()
+        return stop.value.code or 0, capsys.readouterr().err
+
+    return run
+
+
+@pytest.fixture
+def project(tmp_path):
+    """Return a function that saves a project, with speech and a database if they are asked for."""
+
+    made = []
+
+    def make(speaks: bool, database: DatabaseReference | None = None):
+        made.append(tmp_path / f"project{len(made)}.efase")
+        path, document = made[-1], Document()
+        if speaks:
+            document.apply(SetSpeech.on(document, made_speech(1)))
+        document.database_reference = database
+        file = ProjectFile.create(path)
+        file.save(ProjectContent.of(document), None if document.speech is None else document.speech.audio)
+        file.close()
+        return path
+
+    return make
+
+
+def test_what_is_missing_is_one_sentence_and_nothing_is_written(efase, project, tmp_path):
+    out = tmp_path / "a.csv"
+    cases = [
+        (tmp_path / "none.efase", "There is no eFASE project"),
+        (project(False), "has no speech yet"),
+        (project(True), "names no motion database"),
+        (project(True, DatabaseReference("tiny", "0", str(tmp_path / "gone.h5"))), "gone.h5"),
+    ]
+    for path, sentence in cases:
+        code, said = efase("export", path, "-o", out)
+        assert code == 2 and sentence in said and len(said.splitlines()) == 1
+    assert "--db" in said
+    assert not out.exists()
+
+
+def test_another_database_can_be_named_and_the_difference_is_said(efase, project, tmp_path, database_path):
+    path = project(True, DatabaseReference("tiny", "0", str(tmp_path / "gone.h5")))
+    code, said = efase("export", path, "-o", tmp_path / "a.csv", "--db", database_path)
+    assert code == 0 and "is not what it was" in said
+    positions, _, rate_hz = read_motion(tmp_path / "a.csv")
+    assert positions.shape[1:] == (14, 3) and rate_hz == 30.0
+    assert len(positions) == pytest.approx(0.9 * 30, abs=1)
+
+
+def test_a_project_beside_its_database_finds_it(efase, project, tmp_path, database_path):
+    (tmp_path / "tiny.h5").write_bytes(database_path.read_bytes())
+    path = project(True, DatabaseReference("tiny", "0", "somewhere/else/tiny.h5"))
+    assert efase("export", path, "-o", tmp_path / "a.c3d")[0] == 0
+
+
+def test_a_file_alone_opens_the_window(efase, project, monkeypatch):
+    opened = []
+    monkeypatch.setattr("app.main.run_window", lambda path=None: opened.append(path) or 0)
+    path = project(False)
+    assert efase(path)[0] == 0
+    assert efase()[0] == 0
+    assert opened == [path, None]
+    code, said = efase("gone.efase")
+    assert code == 2 and "There is no file 'gone.efase'" in said
+    assert efase("nonsense")[0] == 2
