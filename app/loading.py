@@ -10,12 +10,14 @@ from app import texts
 from app.pictures import FaceRig
 from core.document.parts import AlignedSpeech, FaceChoice, Speech
 from core.errors import UserFacingError
+from core.folders import data_dir
 from core.media.audio import Audio
 from core.motion.curation import CurationList, Removal
 from core.motion.database import MotionDatabase
 from core.motion.marker_set import MarkerSet
 from core.progress import Progress
 from core.search.engine import SearchEngine
+from core.speech.lexicon import parse_lexicon
 
 _TEXT_SUFFIX = ".txt"
 _BESIDE_SPEECH = (".TextGrid", ".textgrid", ".lab", ".txt")
@@ -119,11 +121,18 @@ def load_captured_sentence(request: tuple[MotionDatabase, str], _progress: Progr
     return KnownSentence(Speech(sound, transcript, text), emotion)
 
 
+def lexicon_path() -> Path:
+    """Return where this user's own lexicon lies; it need not exist."""
+    return data_dir() / "lexicon.txt"
+
+
 def read_speech(request: SpeechRequest, progress: Progress) -> AlignedSpeech:
-    """Read speech and align it."""
+    """Read speech and align it, with the user's own lexicon."""
     from app.speech import load_speech
 
-    speech = load_speech(request.audio, request.text, request.phones, progress=progress)
+    path = lexicon_path()
+    lexicon = path if path.is_file() and parse_lexicon(path.read_text(encoding="utf-8"), path.name) else None
+    speech = load_speech(request.audio, request.text, request.phones, lexicon, progress=progress)
     speech.audio.digest  # noqa: B018  computed here, off the main thread
     return speech
 

@@ -16,6 +16,7 @@ from app.menus import make_menus
 from app.panels.control import WIDTH_PX, ControlPanel
 from app.panels.export_dialog import ExportDialog
 from app.panels.isomap import IsomapPane
+from app.panels.lexicon import LexiconDialog
 from app.panels.motion import MotionPane
 from app.panels.preview import PreviewPane
 from app.panels.status import StatusLine
@@ -49,6 +50,7 @@ class MainWindow(AskingWindow):
         self._button_keys = ButtonKeys(self)
         QApplication.instance().installEventFilter(self._button_keys)
         self.actions = Actions(self)
+        self.lexicon = LexiconDialog(authoring.jobs, self)
         self.export_dialog = ExportDialog(authoring, self.settings, self)
         make_menus(self)
         self._join()

@@ -12,6 +12,7 @@ from core.errors import UserFacingError
 from core.media.audio import Audio
 from core.progress import SILENT, Progress
 from core.speech.loudness import FRAME_S, holds_no_speech, levels_db, loud_frames, stretches
+from core.speech.phone_names import phones_named
 from core.speech.pronunciation import Pronouncer, Pronunciation
 from core.speech.script_marks import without_script_marks
 from core.speech.sphinx import (
@@ -43,6 +44,15 @@ _SHORTEST_DOUBT_S = 0.3
 _MOST_WORDS_IN_MESSAGE = 6
 _LONGEST_MARK = 40
 _MOST_WARNINGS_OF_A_KIND = 3
+
+
+def said_as(word: str) -> tuple[str, ...]:
+    """Return the phones that an alignment without a lexicon would look for, in our names.
+
+    Raises `UserFacingError` when it cannot be read as English.
+    """
+    variants = Pronouncer(SphinxAligner().dictionary).pronounce(word).variants
+    return tuple(phones_named(variants[0], [word] * len(variants[0]))[0])
 
 
 def align(audio: Audio, text: str, lexicon: Lexicon | None = None, progress: Progress = SILENT) -> Transcript:

@@ -24,19 +24,25 @@ def read_lexicon(path: str | Path, strict: bool = False) -> Lexicon:
     Raises `UserFacingError` naming the line that has no phones or a phone that means nothing (in ``strict`` mode:
     none of ours).
     """
+    lexicon = parse_lexicon(read_text(path, "lexicon"), str(path), strict)
+    if not lexicon:
+        raise UserFacingError(f"The lexicon '{path}' holds no word.", _SHAPE)
+    return lexicon
+
+
+def parse_lexicon(text: str, name: str, strict: bool = False) -> Lexicon:
+    """Read the lines of a lexicon, maybe none; ``name`` is what messages call it. Raises as `read_lexicon` does."""
     lexicon: Lexicon = {}
-    for number, line in enumerate(read_text(path, "lexicon").split("\n"), start=1):
+    for number, line in enumerate(text.split("\n"), start=1):
         columns = line.split()
         if not columns or columns[0].startswith(_COMMENTS):
             continue
-        place = f"'{path}', line {number}"
+        place = f"'{name}', line {number}"
         word = _VARIANT.sub("", columns[0]).lower()
         phones, _ = phones_named(columns[1:], [place] * (len(columns) - 1), strict)
         if not phones or PAU in phones:
             raise UserFacingError(f"{place}: '{columns[0][:20]}' has no phones, or a silence among them.", _SHAPE)
         lexicon.setdefault(word, []).append(tuple(phones))
-    if not lexicon:
-        raise UserFacingError(f"The lexicon '{path}' holds no word.", _SHAPE)
     return lexicon
 
 
