@@ -16,11 +16,13 @@ class TunableWeight:
     """One dimension of the tuning, walked in its logarithm.
 
     low, high : bounds, as a multiple of the untuned weight when ``relative``, else as the weight itself
+    start : where to begin instead of at the untuned weight, for terms that are off until then
     """
 
     low: float
     high: float
     relative: bool = False
+    start: float | None = None
 
 
 # VGap has no weight of its own (equation 7), so it is the unit of all others and no scale is left over: PNT is a
@@ -34,18 +36,19 @@ PAPER_WEIGHTS: Mapping[str, TunableWeight] = {
     "alpha5": TunableWeight(2.0, 50.0),
     "alpha6": TunableWeight(0.5, 50.0),
 }
-# What the paper does not have (see `SearchWeights`). Where such a weight is 0 its term is off, and stays off.
+# What the paper does not have; see `SearchWeights`.
 FURTHER_WEIGHTS: Mapping[str, TunableWeight] = {
-    "context_before": TunableWeight(0.02, 20.0),
-    "context_after": TunableWeight(0.02, 20.0),
-    "context_decay": TunableWeight(0.1, 1.0),
-    "duration": TunableWeight(0.02, 20.0),
+    "context_before": TunableWeight(0.02, 20.0, start=0.3),
+    "context_after": TunableWeight(0.02, 20.0, start=0.3),
+    "context_decay": TunableWeight(0.1, 1.0, start=0.5),
+    "duration": TunableWeight(0.02, 20.0, start=0.3),
 }
 
 
 class TuningSpace:
-    """Weights as points: the logarithms of those that matter to a database, shifted so that 0 is where one starts.
+    """Weights as points: the logarithms of those that matter to a database.
 
+    low, high : the bounds; start : where to begin, the untuned weights for the most part; each shape (n_dims,)
     untuned : what relative bounds refer to, and the values of weights that are left alone
     with_further : tune the terms beyond the paper too
     """
@@ -59,12 +62,8 @@ class TuningSpace:
         scale = [getattr(untuned, name) if table[name].relative else 1.0 for name in table]
         self.low = np.log([w.low * s for w, s in zip(table.values(), scale)])
         self.high = np.log([w.high * s for w, s in zip(table.values(), scale)])
-
-    @property
-    def start(self) -> np.ndarray:
-        """The untuned weights as a point, within the bounds."""
-        values = np.array([getattr(self.untuned, name) for name in self.names])
-        return np.log(np.maximum(values, 1e-300)).clip(self.low, self.high)
+        starts = [getattr(untuned, name) if w.start is None else w.start for name, w in table.items()]
+        self.start = np.log(np.maximum(starts, 1e-300)).clip(self.low, self.high)
 
     def weights(self, point: np.ndarray) -> SearchWeights:
         """Weights at ``point``, float64, shape (n_dims,); beyond the bounds the bounds hold."""

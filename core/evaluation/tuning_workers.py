@@ -183,7 +183,7 @@ class Cluster:
         from distributed import as_completed
 
         futures = [self._client.submit(_evaluate_there, i, task, pure=False, retries=5) for i, task in enumerate(tasks)]
-        for future in as_completed(futures):
+        for future in as_completed(futures, loop=self._client.loop):
             yield future.result()
 
 

@@ -11,6 +11,7 @@ import pytest
 from app import cli
 from core.motion.build import BuildSettings, build_database
 from core.motion.database import open_database
+from core.search.weight_files import read_weights
 
 
 @pytest.fixture
@@ -115,3 +116,15 @@ def test_files_that_hold_no_weights_are_refused(efase, held_out, speech_path, tm
     code, out, err = efase("synth", speech_path, *phones, "--weights", file)
     assert (code, out) == (2, "")
     assert "strange.json" in err and err.count("\n") == 1
+
+
+def test_a_new_demo_database_comes_tuned(tiny_corpus, settings_folder, monkeypatch):
+    from app import demo
+
+    monkeypatch.setattr(demo, "demo_corpus", lambda progress: tiny_corpus())
+    database = demo.demo_database()
+    shipped, record = read_weights(demo._WEIGHTS)
+    assert database.weights == shipped
+    assert database.untuned_weights != shipped
+    assert open_database(database.path).tuning["search"]["split"] == record["split"] == "tune"
+    assert record["total_error"] < record["untuned_total_error"]
