@@ -189,9 +189,9 @@ def test_remove_then_pin_uses_no_stale_table():
         off_path = sorted(set(range(len(costs.terms.nodes))) - set(session.path.nodes.tolist()))
         removed = frozenset(off_path[::2])
         before = session.path
-        assert session.update(SearchRequest(request.phonemes, request.emotions, {}, removed)) is before
+        assert session.update(replace(request, removed=removed)) is before
         assert not session.has_prices
-        pinned = SearchRequest(request.phonemes, request.emotions, {4: off_path[1]}, removed)
+        pinned = replace(request, pins={4: off_path[1]}, removed=removed)
         cold = find_path(pinned, costs, kernels)
         assert session.update(pinned).nodes.tolist() == cold.nodes.tolist()
         assert not removed & set(session.path.nodes.tolist())
@@ -204,7 +204,7 @@ def test_a_second_pin_before_the_refresh():
     session = SearchSession(request, costs, kernels)
     session.refresh()
     for pins in ({2: 11}, {2: 11, 6: 30}, {6: 30}):
-        now = SearchRequest(request.phonemes, request.emotions, pins)
+        now = replace(request, pins=pins)
         assert session.update(now).nodes.tolist() == find_path(now, costs, kernels).nodes.tolist()
 
 
