@@ -15,6 +15,7 @@ from core.motion.database import open_database
 from core.search.best_path import find_path
 from core.search.compute import NumpyKernels
 from core.search.engine import SearchEngine
+from core.synthesis.options import PAPER
 from tests.core.document.random_edits import made_speech, random_edit
 
 
@@ -25,7 +26,7 @@ def database(database_path):
 
 def cold(database, document):
     """Search every node in every slot, with nothing left from before."""
-    engine = SearchEngine(database, NumpyKernels(), document.weights)
+    engine = SearchEngine(database, NumpyKernels(), document.weights, options=PAPER)
     request = engine.request(document.speech_input())
     return find_path(request, engine.costs, engine.prepared_kernels())
 
@@ -35,7 +36,9 @@ def follow(database, seed: int, n_edits: int, every: int) -> int:
     chance, document = random.Random(seed), Document(face=None)
     document.apply(SetSpeech.on(document, made_speech(seed)))
     document.take_database(database, {})
-    live, infeasible, done, undone = LiveSearch(SearchEngine(database, NumpyKernels())), 0, [], []
+    # the paper's setting makes the motion of one path, which is quick; the path is what this is about
+    live = LiveSearch(SearchEngine(database, NumpyKernels(), options=PAPER))
+    infeasible, done, undone = 0, [], []
     for i in range(n_edits):
         if done and chance.random() < 0.25:
             undone.append(done.pop())
@@ -99,7 +102,7 @@ def test_a_price_is_what_forcing_a_node_costs(database):
     document = Document(face=None)
     document.apply(SetSpeech.on(document, made_speech(5)))
     document.take_database(database, {})
-    live = LiveSearch(SearchEngine(database, NumpyKernels()))
+    live = LiveSearch(SearchEngine(database, NumpyKernels(), options=PAPER))
     path = live.answer(document.speech_input()).path
     priced = live.price()
     for slot, node in ((0, 3), (4, 50), (8, 90)):
