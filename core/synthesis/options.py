@@ -25,7 +25,7 @@ class SynthesisOptions:
     emotion_strength : make mixed emotions by blending motions of the pure ones, and not only by choosing nodes
     """
 
-    n_paths: int = 6
+    n_paths: int = 5
     surcharge: float = 2.0
     temperature: float = 10.0
     silence: str = CAPTURED
