@@ -19,13 +19,13 @@ Ask = Callable[[np.ndarray, Sequence[int]], np.ndarray]
 _DIFFERENCE = 0.25  # of a weight's logarithm, to either side
 _FIRST_STEP, _LAST_STEP = 1.0, 0.02  # length of a step, in the same unit
 _SHORTER = (1.0, 0.5, 0.2)  # what the line search tries, of the step
-_RUNGS = ((1 / 6, 1.0, 0.45), (1 / 3, 1 / 6, 0.3), (1.0, 1 / 25, 0.25))
+_RUNGS = ((1 / 10, 1.0, 0.4), (1 / 3, 1 / 6, 0.3), (1.0, 1 / 25, 0.3))  # of sentences, of starts, of the budget
 
 
 def gradient_descent(space: TuningSpace, starts: np.ndarray, ask: Ask, n_sentences: int, budget: int) -> None:
     """Descend from all ``starts`` at once, shape (n_starts, n_dims), the paper's way (section 6.4).
 
-    So that hundreds of starts can be paid for, they all begin on a sixth of the sentences; the best sixth of them goes
+    So that hundreds of starts can be paid for, they all begin on a tenth of the sentences; the best sixth of them goes
     on with a third of the sentences, and the best few with all.
 
     budget : sentence-solves to spend
@@ -36,9 +36,9 @@ def gradient_descent(space: TuningSpace, starts: np.ndarray, ask: Ask, n_sentenc
         values = ask(points, sentences).sum(axis=1)
         kept = np.argsort(values, kind="stable")[: max(2, round(share_of_starts * len(starts)))]
         points, steps, values = points[kept], steps[kept], values[kept]
-        left = share_of_budget * budget
+        left = share_of_budget * budget - values.size
         cost = len(points) * len(sentences) * (2 * len(space.names) + len(_SHORTER))
-        while left >= cost / 2 and (steps > _LAST_STEP).any():
+        while left >= cost and (steps > _LAST_STEP).any():
             points, values, steps = _descend(space, points, values, steps, ask, sentences)
             left -= cost
     ask(points, range(n_sentences))
