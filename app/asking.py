@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QFileDialog, QMainWindow
 
 from app import texts
 from app.authoring import Authoring
-from app.loading import SpeechRequest, face_beside_markers
+from app.loading import SpeechRequest, face_beside_markers, save_emotions
 from app.panels.commands import Choosable, Chooser, commands
 from app.panels.message_bar import MessageBar
 from app.project_keeper import ProjectKeeper
@@ -92,6 +92,20 @@ class AskingWindow(QMainWindow):
         path = self._ask_file("reference", texts.VIDEO_REFERENCE, texts.FILTER_REFERENCE)
         if path is not None:
             self.authoring.set_reference_video(ReferenceVideo(str(path)))
+
+    def ask_save_emotions(self) -> None:
+        """Choose where the emotion spans go, as lines of ``start end emotion intensity``."""
+        document = self.authoring.document
+        if document.speech is None:
+            return
+        start = Path(last_folder(self.settings, "speech")) / "emotions.txt"
+        name, _ = QFileDialog.getSaveFileName(self, texts.SAVE_EMOTIONS, str(start), texts.FILTER_EMOTIONS)
+        if name:
+            remember_folder(self.settings, "speech", Path(name))
+            request = (document.modifiers, document.speech.transcript.duration_s, Path(name))
+            done = texts.FILM_SAVED.format(path=name)
+            jobs = self.authoring.jobs
+            jobs.start("save", texts.SAVING, request, save_emotions, lambda _: self.authoring.noted.emit(done))
 
     def ask_save_film(self) -> None:
         """Choose where a copy of the film goes."""

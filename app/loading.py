@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from app import texts
@@ -17,6 +17,7 @@ from core.motion.database import MotionDatabase
 from core.motion.marker_set import MarkerSet
 from core.progress import Progress
 from core.search.engine import SearchEngine
+from core.speech.emotion import EmotionModifier
 from core.speech.lexicon import parse_lexicon
 
 _TEXT_SUFFIX = ".txt"
@@ -135,6 +136,14 @@ def read_speech(request: SpeechRequest, progress: Progress) -> AlignedSpeech:
     speech = load_speech(request.audio, request.text, request.phones, lexicon, progress=progress)
     speech.audio.digest  # noqa: B018  computed here, off the main thread
     return speech
+
+
+def save_emotions(request: tuple[tuple[EmotionModifier, ...], float, Path], _progress: Progress) -> None:
+    """Write emotion spans; one without an end ends with the speech."""
+    from core.speech.emotion_files import write_emotions
+
+    modifiers, duration_s, path = request
+    write_emotions([replace(m, end_s=min(m.end_s, duration_s)) for m in modifiers], path)
 
 
 def fit_face(request: tuple[FaceChoice, MarkerSet], progress: Progress) -> FaceRig:

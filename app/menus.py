@@ -34,6 +34,7 @@ def _file(window: MainWindow) -> None:
     add(file, "face", texts.OPEN_FACE, "", window.ask_face)
     add(file, "database", texts.OPEN_DATABASE, "Ctrl+D", window.ask_database)
     add(file, "demo_database", texts.OPEN_DEMO_DATABASE, "", authoring.open_database)
+    add(file, "save_emotions", texts.SAVE_EMOTIONS, "", window.ask_save_emotions)
     add(file, "lexicon", texts.LEXICON_ACTION, "", window.lexicon.open_now)
     file.addSeparator()
     add(file, "save_film", texts.SAVE_FILM, "", window.ask_save_film)

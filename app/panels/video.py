@@ -138,8 +138,10 @@ class VideoPane(Pane):
                 self.offset.blockSignals(True)
                 self.offset.setValue(reference.offset_s)
                 self.offset.blockSignals(False)
-            self.source.choose(REFERENCE if reference is not None else COMPOSED)
-            if self._shown != self.path:
+            wanted = REFERENCE if reference is not None else COMPOSED
+            if self.source.key != wanted:
+                self.source.choose(wanted)
+            elif self._shown != self.path:
                 self._show_source()
             self.on_playhead_moved(self._authoring.view.playhead_s)
 

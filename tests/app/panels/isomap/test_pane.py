@@ -14,7 +14,6 @@ from app.panels.map_pick import MapPick
 
 LEFT = Qt.MouseButton.LeftButton
 WAIT_MS = 30_000
-SLOT, PHONE = 2, "aa"
 
 
 def place_px(view, point):
@@ -38,10 +37,13 @@ def drag(view, points):
 
 @pytest.fixture
 def pane(animated, qtbot):
-    """The pane with the map of the selected utterance, prices known."""
-    animated.authoring.select_slot(SLOT)
-    qtbot.waitUntil(lambda: animated.authoring.document.prices is not None, timeout=WAIT_MS)
-    assert animated.isomap.view.shown.phone == PHONE
+    """The pane with the map of an utterance that is said by a node of its own phone, prices known."""
+    document = animated.authoring.document
+    qtbot.waitUntil(lambda: document.prices is not None, timeout=WAIT_MS)
+    phones, nodes = document.speech.transcript.phones, document.database.nodes
+    own = [p for p, row in enumerate(document.answer.path.nodes) if nodes[int(row)].phone == phones[p]]
+    animated.authoring.select_slot(own[len(own) // 2])
+    assert animated.isomap.view.shown.phone == animated.authoring.view.slot_phone
     return animated.isomap
 
 
@@ -79,7 +81,7 @@ def test_a_click_on_a_dot_selects_its_node_and_shows_that_very_frame_with_its_pr
     assert pick.frames.tolist() == [shown.map.frames[pane_place(shown, pick)]]
     assert pane.selection == {pick.node}
     document = animated.authoring.document
-    price = document.prices[SLOT, pick.node] / document.cost_unit
+    price = document.prices[animated.authoring.view.slot, pick.node] / document.cost_unit
     assert pick.price == pytest.approx(price)
     assert f"+{price:.2f}" in animated.preview.caption.whole_text
     node = document.database.nodes[pick.node]
@@ -93,15 +95,16 @@ def pane_place(shown, pick):
 
 def test_double_click_pins_and_u_frees(pane, animated, qtbot):
     document = animated.authoring.document
+    slot = animated.authoring.view.slot
     point = pane.view.shown.points[unused_place(pane)]
     click(pane.view, point)
     wanted = pane.kept.node
     QTest.mouseDClick(pane.canvas.viewport(), LEFT, pos=place_px(pane.view, point))
-    assert document.pins == {SLOT: document.database.nodes.name(wanted)}
-    qtbot.waitUntil(lambda: document.answer.path.nodes[SLOT] == wanted, timeout=WAIT_MS)
+    assert document.pins == {slot: document.database.nodes.name(wanted)}
+    qtbot.waitUntil(lambda: document.answer.path.nodes[slot] == wanted, timeout=WAIT_MS)
     QTest.keyClick(pane.canvas, Qt.Key.Key_U)
     assert document.pins == {}
-    qtbot.waitUntil(lambda: document.answer.path.nodes[SLOT] != wanted, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: document.answer.path.nodes[slot] != wanted, timeout=WAIT_MS)
 
 
 def test_delete_asks_why_and_only_enter_removes(pane, animated, qtbot):
@@ -164,9 +167,10 @@ def test_colour_by_price_paints_the_cheapest_node_brightest(pane, animated):
         QTest.keyClick(pane.controls.colour, Qt.Key.Key_Down)
     pane.controls.colour.activated.emit(pane.controls.colour.currentIndex())
     shown, painted = pane.view.shown, pane.view._colouring
-    used = int(animated.authoring.document.answer.path.nodes[SLOT])
+    slot = animated.authoring.view.slot
+    used = int(animated.authoring.document.answer.path.nodes[slot])
     assert set(painted.index[shown.node == used]) == {painted.index.max()}
-    price = animated.authoring.document.prices[SLOT][shown.node]
+    price = animated.authoring.document.prices[slot][shown.node]
     order = np.argsort(price, kind="stable")
     assert (np.diff(painted.index[order]) <= 0).all()
     assert "free" in pane.legend.text()
@@ -177,6 +181,20 @@ def test_a_filtered_emotion_is_not_drawn(pane):
     everything = pane.view.dots.n_shown
     QTest.mouseClick(pane.controls.filters["anger"], LEFT)
     assert pane.view.dots.n_shown == everything - int((shown.emotion == 2).sum())
+
+
+def test_other_emotion_colours_are_put_on_everywhere_and_remembered(pane, animated):
+    from app.emotion_colours import OKABE_ITO, PAPER, emotion_colours
+    from app.theme import colour, theme
+
+    before = pane.view._colouring.colours.copy()
+    pane.controls.palette_button.menu().actions()[1].trigger()
+    assert emotion_colours.name == OKABE_ITO
+    assert not np.allclose(pane.view._colouring.colours, before)
+    assert pane.view._colouring.colours[2] == pytest.approx(colour(theme().emotion["anger"]).getRgbF()[:3])
+    pane.controls.palette_button.menu().actions()[0].trigger()
+    assert emotion_colours.name == PAPER
+    assert np.allclose(pane.view._colouring.colours, before)
 
 
 def test_space_plays_the_selected_node_as_a_clip_and_not_the_sentence(pane, animated, qtbot):
@@ -195,7 +213,7 @@ def test_space_plays_the_selected_node_as_a_clip_and_not_the_sentence(pane, anim
 
 
 def test_time_correct_frames_move_with_the_playhead(pane, animated):
-    utterance = animated.authoring.document.speech.transcript.phonemes[SLOT]
+    utterance = animated.authoring.document.speech.transcript.phonemes[animated.authoring.view.slot]
     shown = pane.view.shown
     for share in (0.0, 0.5, 0.9):
         animated.authoring.seek(utterance.start_s + share * (utterance.end_s - utterance.start_s))
