@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from psygnal import Signal
+from PySide6.QtCore import QObject, Signal
 
 from app.settings import window_settings
 from app.theme import DARK, LIGHT, set_emotion_colours, theme
@@ -16,7 +16,7 @@ _OKABE_ITO = {
 }
 
 
-class EmotionColours:
+class EmotionColours(QObject):
     """Which colours are chosen; remembered by the window's settings.
 
     changed() : whoever paints emotions paints anew

@@ -11,6 +11,7 @@ from app import texts
 from app.actions import Actions, ButtonKeys
 from app.asking import AskingWindow
 from app.authoring import Authoring
+from app.emotion_colours import emotion_colours
 from app.icons import icon
 from app.menus import make_menus
 from app.panels.control import WIDTH_PX, ControlPanel
@@ -39,6 +40,7 @@ class MainWindow(AskingWindow):
         self.setWindowTitle(texts.APPLICATION)
         self.setWindowIcon(icon("workstation"))
         self.setAcceptDrops(True)
+        emotion_colours.put_on()
         self.control = ControlPanel(authoring)
         self.motion = MotionPane(authoring)
         self.video = VideoPane(authoring)
@@ -107,6 +109,7 @@ class MainWindow(AskingWindow):
         authoring.noted.connect(self.status.say)
         authoring.film.changed.connect(self._enable_save)
         control.polish.region_chosen.connect(self.timeline.set_region)
+        emotion_colours.changed.connect(self.timeline.renew)
         self.isomap.previewed.connect(self.preview.show_pick)
         self.preview.pin_asked.connect(self.isomap.pin_kept)
         control.speech_asked.connect(self.ask_speech)

@@ -17,6 +17,8 @@ from core.speech.emotion import EMOTIONS
 _STEPS = 24
 _HUES = 12
 _ALARM = "#ff4d3d"
+# the darkest colours of a map of colours do not show on a dark canvas
+_VISIBLE = 0.22
 # Suspicion from which on a node is worth watching, and from which on it is as bright as can be.
 _SUSPICION_RANGE = 1.5, 60.0
 
@@ -53,7 +55,7 @@ def by_emotion(shown: ShownMap) -> Colouring:
 
 def by_time(shown: ShownMap) -> Colouring:
     """Relative time within the node."""
-    return _scale(pg.colormap.get("viridis"), shown.relative_time, texts.SCALE_START, texts.SCALE_END)
+    return _scale(pg.colormap.get("viridis"), shown.relative_time, texts.SCALE_START, texts.SCALE_END, _VISIBLE)
 
 
 def by_sentence(shown: ShownMap) -> Colouring:
@@ -93,7 +95,8 @@ def colouring(shown: ShownMap, by: ColourBy, score: np.ndarray | None, price: np
     return plain.get(by, by_emotion)(shown)
 
 
-def _scale(colours: pg.ColorMap, share: np.ndarray, low: str, high: str) -> Colouring:
-    colours = colours.map(np.linspace(0.0, 1.0, _STEPS), mode="float")[:, :3]
+def _scale(colours: pg.ColorMap, share: np.ndarray, low: str, high: str, darkest: float = 0.0) -> Colouring:
+    """Spread ``share``, 0 to 1, over a map of colours, of which the part below ``darkest`` is left out."""
+    steps = colours.map(np.linspace(darkest, 1.0, _STEPS), mode="float")[:, :3]
     index = np.round(np.clip(share, 0.0, 1.0) * (_STEPS - 1)).astype(int)
-    return Colouring(np.asarray(colours, float), index, low, high)
+    return Colouring(np.asarray(steps, float), index, low, high)

@@ -82,8 +82,9 @@ class TimeCorrectFrames(MapMarks):
     """Where each node of the map is at the relative time of the playhead: small rings."""
 
     def __init__(self) -> None:
-        super().__init__("o", theme().text, 6, Z_TIME, 1.0)
-        self.setOpacity(0.75)
+        super().__init__("o", theme().text, 5, Z_TIME, 1.0)
+        self.setBrush(None)
+        self.setOpacity(0.6)
 
 
 class ContextCorrectNodes(MapMarks):

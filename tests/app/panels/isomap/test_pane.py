@@ -143,22 +143,21 @@ def test_delete_asks_why_and_only_enter_removes(pane, animated, qtbot):
 
 def test_a_box_selects_what_it_encloses_and_a_lasso_too(pane):
     shown = pane.view.shown
-    centre = np.median(shown.points, axis=0)
-    corners = [place_px(pane.view, centre - 2 * shown.points.std(axis=0)),
-               place_px(pane.view, centre + 2 * shown.points.std(axis=0))]  # fmt: skip
+    left, bottom, right, top = shown.bounds
+    middle = float(np.median(shown.points[:, 0]))
+    low, high = place_px(pane.view, (left, bottom)), place_px(pane.view, (right, top))
+    low, high, middle_px = low + QPoint(-3, 3), high + QPoint(3, -3), place_px(pane.view, (middle, top)).x()
     QTest.mouseClick(pane.controls.tool.button("box"), LEFT)
-    drag(pane.view, corners)
-    boxed = pane.selection
-    assert boxed
-    assert boxed <= set(shown.rows.tolist())
-    left, right = sorted(p.x() for p in corners)
-    around = [QPoint(left, corners[0].y()), QPoint(right, corners[0].y()), QPoint(right, corners[1].y()),
-              QPoint(left, corners[1].y())]  # fmt: skip
+    drag(pane.view, [low, high])
+    assert pane.selection == set(shown.rows.tolist())
+
     QTest.keyClick(pane.canvas, Qt.Key.Key_Escape)
     assert pane.selection == frozenset()
     QTest.mouseClick(pane.controls.tool.button("lasso"), LEFT)
-    drag(pane.view, around)
-    assert len(pane.selection & boxed) >= 0.8 * len(boxed)
+    drag(pane.view, [low, QPoint(middle_px, low.y()), QPoint(middle_px, high.y()), QPoint(low.x(), high.y())])
+    share_left = {row: float((shown.trajectory(row)[:, 0] < middle).mean()) for row in shown.rows.tolist()}
+    assert {row for row, share in share_left.items() if share == 1.0} <= pane.selection
+    assert not {row for row, share in share_left.items() if share == 0.0} & pane.selection
 
 
 def test_colour_by_price_paints_the_cheapest_node_brightest(pane, animated):
