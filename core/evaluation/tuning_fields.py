@@ -16,7 +16,7 @@ class TunableWeight:
     """One dimension of the tuning, walked in its logarithm.
 
     low, high : bounds, as a multiple of the untuned weight when ``relative``, else as the weight itself
-    start : where to begin instead of at the untuned weight, for terms that are off until then
+    start : where to begin when the untuned weight is 0, its term off
     """
 
     low: float
@@ -62,7 +62,7 @@ class TuningSpace:
         scale = [getattr(untuned, name) if table[name].relative else 1.0 for name in table]
         self.low = np.log([w.low * s for w, s in zip(table.values(), scale)])
         self.high = np.log([w.high * s for w, s in zip(table.values(), scale)])
-        starts = [getattr(untuned, name) if w.start is None else w.start for name, w in table.items()]
+        starts = [getattr(untuned, name) or w.start or 0.0 for name, w in table.items()]
         self.start = np.log(np.maximum(starts, 1e-300)).clip(self.low, self.high)
 
     def weights(self, point: np.ndarray) -> SearchWeights:
