@@ -38,9 +38,9 @@ class Editor:
 
     def _read(self) -> None:
         for line in self.process.stdout:
-            word, number, *content = line.split(" ", 2)
-            if not line.endswith("\n"):
+            if not line.endswith("\n"):  # it was killed while it spoke
                 return
+            word, number, *content = line.split(" ", 2)
             if word == "begin":
                 self.states[int(number)] = content[0].strip()
             else:
