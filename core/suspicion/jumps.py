@@ -98,12 +98,11 @@ def _peel(white: np.ndarray, least: float) -> dict[int, np.ndarray]:
     size = np.linalg.norm(white, axis=1)
     found: dict[int, np.ndarray] = {}
     times: dict[int, int] = {}
-    while (largest := size[f := int(size.argmax())]) >= least:
+    while size[f := int(size.argmax())] >= least:
         times[f] = times.get(f, 0) + 1
         if times[f] > _TIMES_AT_ONE_FRAME:  # two jumps side by side converge slowly; what is left of them is small
             size[f] = 0.0
             continue
-        assert largest > 0
         jump = white[f].copy()
         found[f] = found.get(f, 0.0) + jump
         white[f] = 0.0
