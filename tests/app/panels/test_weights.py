@@ -64,5 +64,5 @@ def test_reset_takes_the_weights_of_the_database_again(at_work, qtbot):
 def test_the_page_is_folded_until_it_is_wanted(at_work):
     page = at_work.control.weights
     assert not page.sliders["alpha1"].isVisible()
-    page.fold.click()
+    page.head.click()
     assert page.sliders["alpha1"].isVisible()
