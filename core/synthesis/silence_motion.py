@@ -16,6 +16,7 @@ from core.motion.resample import frame_bounds
 from core.search.terms import warp_matrix
 from core.speech.emotion import EMOTION_INDEX
 from core.speech.phoneme import PAU, PHONEME_INDEX
+from core.synthesis.blinks import CapturedBlinks
 from core.synthesis.concatenate import SlotFrames
 
 _NEAR_SPEECH_S = 0.15  # how long before and after speech the mouth still belongs to it
@@ -73,6 +74,7 @@ class CapturedSilences:
                 settled = (start + margin * (not opens), stop - margin * (not closes), emotion)
                 if settled[1] - settled[0] >= _SETTLED_S * self._rate_hz:
                     kinds["settled"].append(settled)
+        self._blinks = CapturedBlinks(database, frames)
         self._pieces = {kind: _Pieces.of(found) for kind, found in kinds.items()}
 
     def fill(
@@ -135,7 +137,7 @@ class CapturedSilences:
     def _onward(self, pose: np.ndarray, n: int, kind: str, emotion: np.ndarray, taken: set[int]) -> np.ndarray:
         """``n`` frames that lead away from ``pose``; those of an opening lead backwards in time.
 
-        Settled stretches follow until there is enough; without any the face goes to rest and stays.
+        Settled stretches follow until there is enough; without any the face goes to rest, and only blinks.
         """
         backwards = kind == "opening"
         made = np.zeros((0, len(pose)))
@@ -151,8 +153,9 @@ class CapturedSilences:
                 piece = np.array(self._frames[pieces.start[row] : pieces.stop[row]], float)
                 piece = (piece[::-1] if backwards else piece)[:wanted]
             else:
-                # nothing captured: to rest, or, once there is something, stay
-                piece = np.repeat((made[-1:] if len(made) else self._rest[None]), wanted, axis=0)
+                # no silence as long was captured: to rest, or, once there is something, stay, and blink
+                still = made[-1:] if len(made) else self._rest[None]
+                piece = still + self._blinks.within(wanted, seed=wanted)
             fading = np.exp(-np.arange(len(piece)) / (_EASE_S * self._rate_hz))[:, None]
             made = np.concatenate([made, piece + fading * (pose - piece[0])])
             kind = "settled"
