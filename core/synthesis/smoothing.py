@@ -6,6 +6,7 @@ Deng and Neumann 2008, section 7.2, equation 16 and table 4.
 from __future__ import annotations
 
 import itertools
+from functools import lru_cache
 
 import numpy as np
 from scipy.interpolate import make_smoothing_spline
@@ -50,10 +51,15 @@ def smooth_joins(
             continue  # a cubic smoothing spline needs five points
         weights = frame_weights[first:last].copy()
         weights[: start - first] = weights[stop - first :] = _TIE
-        times = np.arange(first, last, dtype=float)
-        spline = make_smoothing_spline(times, smoothed[first:last], w=weights, lam=1.0)
-        smoothed[start:stop] = spline(times[start - first : stop - first])
+        smoothed[start:stop] = (_smoother(tuple(weights)) @ smoothed[first:last])[start - first : stop - first]
     return smoothed
+
+
+@lru_cache(maxsize=4096)
+def _smoother(weights: tuple[float, ...]) -> np.ndarray:
+    """What equation 16 does to a window, as a matrix: the spline is linear in the frames, and windows are alike."""
+    times = np.arange(len(weights), dtype=float)
+    return make_smoothing_spline(times, np.eye(len(weights)), w=np.array(weights), lam=1.0)(times)
 
 
 def join_windows(
