@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import soundfile
 
+from core.document.parts import FaceChoice
 from core.motion.build import BuildSettings, build_database
 from core.motion.corpus import Corpus
 from core.motion.recording import Recording
@@ -107,7 +108,7 @@ def settings_folder(tmp_path, monkeypatch, known_backends):
 
 @pytest.fixture
 def open_window(qtbot, qapp, settings_folder):
-    """Return a function that shows a main window without a demo and without a face; all are closed at the end."""
+    """Return a function that shows a main window without a demo, by default without a face; all are closed at the end."""
     from app.authoring import Authoring
     from app.theme import apply_theme
     from app.window import MainWindow
@@ -115,8 +116,8 @@ def open_window(qtbot, qapp, settings_folder):
     apply_theme(qapp)
     opened = []
 
-    def make() -> MainWindow:
-        window = MainWindow(Authoring(face=None))
+    def make(face: FaceChoice | None = None) -> MainWindow:
+        window = MainWindow(Authoring(face))
         opened.append(window)
         with qtbot.waitExposed(window):
             window.show()
