@@ -38,12 +38,12 @@ class Authoring(Editing):
 
     rig_changed() : another face, or none, is to be drawn; see `rig`
     tracks_changed() : head, gaze or tongue move otherwise; see `tracks`
-    backend_changed(str) : which compute backend searches
+    backend_changed(name, sentence) : which compute backend searches, in a word and in full
     """
 
     rig_changed = Signal()
     tracks_changed = Signal()
-    backend_changed = Signal(str)
+    backend_changed = Signal(str, str)
 
     def __init__(self, face: FaceChoice | None = DEFAULT_FACE, parent: QObject | None = None) -> None:
         super().__init__(face, parent)
@@ -74,7 +74,7 @@ class Authoring(Editing):
     def take_engine(self, opened: OpenedDatabase) -> None:
         """Make a database that was opened one that can be searched."""
         self._solving.add_engine(opened.engine)
-        self.backend_changed.emit(opened.backend)
+        self.backend_changed.emit(opened.engine.kernels.report.backend, opened.backend)
         if opened.trouble:
             self.failed.emit(*opened.trouble)
 

@@ -119,9 +119,10 @@ class ControlPanel(QWidget):
         self._show_cost()
         self._show_readiness()
 
-    def on_backend_changed(self, sentence: str) -> None:
+    def on_backend_changed(self, name: str, sentence: str) -> None:
         """Show which backend computes."""
-        self.engine.setText(texts.ENGINE_FACTS.format(backend=sentence))
+        self.engine.setText(texts.ENGINE_FACTS.format(backend=name))
+        self.engine.setToolTip(texts.ENGINE_TIP.format(sentence=sentence))
 
     def on_transcript_edited(self) -> None:
         """Offer to align what was written."""

@@ -108,7 +108,7 @@ def settings_folder(tmp_path, monkeypatch, known_backends):
 
 @pytest.fixture
 def open_window(qtbot, qapp, settings_folder):
-    """Return a function that shows a main window without a demo, by default without a face; all are closed at the end."""
+    """Return a function that shows a main window without a demo, with a face if asked; all are closed at the end."""
     from app.authoring import Authoring
     from app.theme import apply_theme
     from app.window import MainWindow
