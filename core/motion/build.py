@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.spatial.transform import Rotation
+from threadpoolctl import threadpool_limits
 
 from core.errors import UserFacingError
 from core.manifold.isomap import PhonemeMap
@@ -174,7 +175,8 @@ def _assemble(
         sentences.append(CapturedSentence(p.recording.sentence, p.recording.emotion, p.recording.text, first,
                                           first + len(p.face), transcript))  # fmt: skip
         first += len(p.face)
-    frames = np.concatenate([pca.coefficients(p.face) for p in processed]).astype(np.float32)
+    with threadpool_limits(1):  # as in `MotionPca.fit`: equal captures give equal bytes
+        frames = np.concatenate([pca.coefficients(p.face) for p in processed]).astype(np.float32)
     turns = np.concatenate([Rotation.from_matrix(p.head.rotation).as_rotvec() for p in processed]).astype(np.float32)
     moves = np.concatenate([p.head.translation for p in processed]).astype(np.float32)
     nodes = builder.table()
@@ -226,8 +228,6 @@ def make_maps(database: MotionDatabase, progress: Progress = SILENT) -> dict[str
 
 
 def _map_of(phone: str, rows: np.ndarray, frames: np.ndarray) -> tuple[str, PhonemeMap]:
-    from threadpoolctl import threadpool_limits
-
     with threadpool_limits(1):
         return phone, PhonemeMap.make(rows, frames.astype(float))
 

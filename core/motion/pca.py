@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,12 @@ class MotionPca:
 
         Fewer than ``n_dims`` components are kept when the poses do not span that many.
         """
+        # on more threads the last bits depend on how many, and with them the content hash of a database
+        with threadpool_limits(1):
+            return cls._fitted(poses, n_dims)
+
+    @classmethod
+    def _fitted(cls, poses: Iterable[np.ndarray], n_dims: int) -> MotionPca:
         total, moment, count, shift = 0.0, 0.0, 0, None
         for block in poses:
             packed = np.asarray(block, float).reshape(len(block), -1)

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 from sklearn.decomposition import PCA
+from threadpoolctl import threadpool_limits
 
 from core.motion.pca import MotionPca
 
@@ -28,3 +29,12 @@ def test_distances_between_poses_are_distances_between_coefficients():
     assert pca.positions(coefficients).reshape(-1, 36) == pytest.approx(packed, abs=1e-6)
     apart = np.linalg.norm(packed[3] - packed[77])
     assert np.linalg.norm(coefficients[3] - coefficients[77]) == pytest.approx(apart)
+
+
+def test_the_number_of_threads_changes_no_bit():
+    poses = np.random.default_rng(3).normal(size=(6000, 90, 3)).cumsum(axis=0)
+    bases = []
+    for n_threads in (1, 2):
+        with threadpool_limits(n_threads):
+            bases.append(MotionPca.fit([poses]).basis.tobytes())
+    assert bases[0] == bases[1]
