@@ -224,7 +224,7 @@ def synth(
     db: Database = None,
     emotion: Annotated[str | None, typer.Option(help="neutral, happiness, anger or sadness.")] = None,
     emotions: Annotated[Path | None, typer.Option(help="Text lines `start end emotion [intensity]`.")] = None,
-    engine: Annotated[str, typer.Option(help="search")] = "search",
+    engine: Annotated[str, typer.Option(help="search, search-single (one path) or search-paper (printed).")] = "search",
     face: Annotated[str, typer.Option(help="default, ben, rosa, otto, pip, or a mesh: OBJ, PLY, glTF.")] = "default",
     markers: Annotated[Path | None, typer.Option(help="CSV `marker,vertex` for a face of your own.")] = None,
     backend: Annotated[str, typer.Option(help="auto, numpy, opencl or glsl.")] = "auto",
@@ -412,6 +412,19 @@ def bench_suspicion(db: Database = None, json: Json = False) -> None:
         print_json(answer)
     else:
         print(suspicion_bench.as_table(answer))
+
+
+@bench.command("window")
+def bench_window(db: Database = None, json: Json = False) -> None:
+    """Measure how long the window keeps an animator waiting, in a session of 200 actions, and how soon it starts."""
+    from app import window_bench
+
+    with progress_bar("bench") as progress:
+        answer = window_bench.bench_window(db, progress)
+    if json:
+        print_json(answer)
+    else:
+        print(window_bench.as_table(answer))
 
 
 def _open(path: Path | None):

@@ -76,16 +76,11 @@ def draw_window(path: Path) -> str:
     with tempfile.TemporaryDirectory(prefix="efase-window-", ignore_cleanup_errors=True) as folder:
         drawn = Path(folder) / "window.png"
         command = [sys.executable, "-m", "app.main", "--picture", str(drawn)]
-        environment = {**os.environ, "TMPDIR": folder}
-        if not (os.environ.get("DISPLAY") or sys.platform in ("darwin", "win32")):
-            virtual = shutil.which("xvfb-run")
-            if virtual is None:
-                return "The window was not drawn: there is no display and no xvfb-run (Debian package xvfb)."
-            width, height = WINDOW_SIZE
-            command = [virtual, "-a", "-s", f"-screen 0 {width}x{height}x24", *command]
-            environment["QT_QPA_PLATFORM"] = "xcb"
-            environment.pop("WAYLAND_DISPLAY", None)
-        code, said = _run(command, environment)
+        try:
+            command, environment = on_screen(command)
+        except UserFacingError as error:
+            return f"The window was not drawn: {error}"
+        code, said = _run(command, {**environment, "TMPDIR": folder})
         if code is None:
             return f"The window was not drawn within {_PICTURE_LIMIT_S} s."
         if code or not drawn.is_file():
@@ -94,6 +89,23 @@ def draw_window(path: Path) -> str:
         with swapped_in(path) as beside:
             shutil.copyfile(drawn, beside)
     return ""
+
+
+def on_screen(command: list[str]) -> tuple[list[str], dict[str, str]]:
+    """Return how to run ``command`` where it has a screen, a virtual one if there is no other, and its environment.
+
+    Raises `UserFacingError` when there is neither.
+    """
+    environment = dict(os.environ)
+    if os.environ.get("DISPLAY") or sys.platform in ("darwin", "win32"):
+        return command, environment
+    virtual = shutil.which("xvfb-run")
+    if virtual is None:
+        raise UserFacingError("There is no display and no xvfb-run (Debian package xvfb).")
+    width, height = WINDOW_SIZE
+    environment["QT_QPA_PLATFORM"] = "xcb"
+    environment.pop("WAYLAND_DISPLAY", None)
+    return [virtual, "-a", "-s", f"-screen 0 {width}x{height}x24", *command], environment
 
 
 def _run(command: list[str], environment: dict[str, str]) -> tuple[int | None, str]:

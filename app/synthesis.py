@@ -14,14 +14,15 @@ from app.pictures import FaceRig
 from app.speech import emotion_modifiers, load_speech
 from core.errors import UserFacingError
 from core.face.default_face import FaceUnavailable
-from core.motion.database import open_database
+from core.motion.database import MotionDatabase, open_database
 from core.motion.stored_weights import named_weights
 from core.progress import SILENT, Progress
 from core.search.engine import SearchAnswer, SearchEngine
+from core.search.weights import SearchWeights
 from core.synthesis.engine import SpeechInput
+from core.synthesis.options import SEARCHES
 from gpu.device import open_kernels
 
-ENGINES = ("search",)
 _SLOT = re.compile("[0-9]{1,9}")
 
 
@@ -49,13 +50,13 @@ class SynthesisJob:
 
 def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
     """Do the job and return the object of ``--json``; raises `UserFacingError` before anything is half-written."""
-    if job.engine not in ENGINES:
-        raise UserFacingError(f"There is no engine '{job.engine}'.", f"Choose one of {', '.join(ENGINES)}.")
+    if job.engine not in SEARCHES:
+        raise UserFacingError(f"There is no engine '{job.engine}'.", f"Choose one of {', '.join(SEARCHES)}.")
     check_outputs(list(job.outputs))
     _check_inputs(job)
     pins = _pins(job.pins)
     database = open_database(job.database) if job.database else demo_database(progress.part(0.0, 0.1))
-    weights = named_weights(job.weights, database)
+    weights = _weights(job, database)
     kernels, backend_sentence = open_kernels(job.backend)
 
     began = time.perf_counter()
@@ -63,7 +64,7 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
     modifiers = emotion_modifiers(job.emotion, job.emotions, speech.audio.duration_s)
     aligned_s = time.perf_counter() - began
     # a backend that was asked for by name shall do the work; all ways give the same path
-    engine = SearchEngine(database, kernels, weights, exhaustive=job.backend != "auto")
+    engine = SearchEngine(database, kernels, weights, exhaustive=job.backend != "auto", options=SEARCHES[job.engine])
     answer = engine.synthesise(SpeechInput(speech.transcript, modifiers, pins), progress.part(0.25, 0.5))
 
     began = time.perf_counter()
@@ -99,6 +100,14 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
         "warnings": warnings,
         "outputs": [str(path) for path in job.outputs],
     }
+
+
+def _weights(job: SynthesisJob, database: MotionDatabase) -> SearchWeights:
+    """The weights asked for; the search as printed has its own, without those that go beyond the paper."""
+    weights = named_weights(job.weights, database)
+    if job.engine != "search-paper":
+        return weights
+    return database.paper_weights if job.weights == "tuned" else weights.as_printed
 
 
 def _check_inputs(job: SynthesisJob) -> None:

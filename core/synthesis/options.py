@@ -53,3 +53,6 @@ class SynthesisOptions:
 PAPER = SynthesisOptions(
     n_paths=1, silence="linear", jitter_window_s=0.0, steady_sentences=False, lip_weight=1.0, emotion_strength=False
 )
+
+# The search by the names that users choose it by: as it does best, its best path alone, as printed.
+SEARCHES = {"search": SynthesisOptions(), "search-single": SynthesisOptions().single, "search-paper": PAPER}

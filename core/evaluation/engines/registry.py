@@ -12,7 +12,7 @@ from core.motion.database import MotionDatabase
 from core.search.compute import SearchKernels
 from core.search.engine import SearchEngine
 from core.synthesis.engine import MotionEngine
-from core.synthesis.options import PAPER, SynthesisOptions
+from core.synthesis.options import PAPER, SEARCHES
 
 EngineFactory = Callable[[MotionDatabase, SearchKernels], MotionEngine]
 
@@ -27,7 +27,7 @@ ENGINES: Mapping[str, EngineFactory] = {
     "phone-means": lambda database, kernels: PhoneMeans(database),
     "random": lambda database, kernels: RandomNodes(paper_search(database, kernels)),
     "search-paper": paper_search,
-    "search-single": lambda database, kernels: SearchEngine(database, kernels, options=SynthesisOptions().single),
+    "search-single": lambda database, kernels: SearchEngine(database, kernels, options=SEARCHES["search-single"]),
     "search": SearchEngine,
 }
 
