@@ -12,6 +12,7 @@ from app.actions import Actions, ButtonKeys
 from app.asking import AskingWindow
 from app.authoring import Authoring
 from app.emotion_colours import emotion_colours
+from app.garbage import MainThreadGarbage
 from app.icons import icon
 from app.menus import make_menus
 from app.panels.control import WIDTH_PX, ControlPanel
@@ -57,6 +58,7 @@ class MainWindow(AskingWindow):
         make_menus(self)
         self._join()
         self._restore_layout()
+        self._garbage = MainThreadGarbage(self)
         self.timeline.setFocus()  # so that Space plays from the start, and is not typed into the transcript
 
     # Making
@@ -212,6 +214,7 @@ class MainWindow(AskingWindow):
             pane.face_view.release()
         self.video.release()
         QApplication.instance().removeEventFilter(self._button_keys)
+        self._garbage.stop()
         super().closeEvent(event)
 
     def dragEnterEvent(self, event) -> None:
