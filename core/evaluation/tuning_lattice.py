@@ -91,21 +91,25 @@ class TuningLattice:
             parts[0, at], parts[1, at], parts[2, at] = block.position_gap, block.velocity_gap, block.smoothing
         return parts
 
-    def best_path(self, sentence: int, request: SearchRequest, weights: SearchWeights, exact: bool) -> np.ndarray:
-        """Rows of the best path, int, shape (n_slots,); its cost equals that of the exact search.
+    def best_path(
+        self, sentence: int, request: SearchRequest, weights: SearchWeights, exact: bool
+    ) -> tuple[np.ndarray, bool]:
+        """Rows of the best path, int, shape (n_slots,), and whether its cost is proved to be that of the exact search.
 
         Silent slots at the ends are given some node that costs the least. Where the expected nodes do not prove it at
         once and ``exact`` is not asked for, it is the best path over nodes that say the phonemes.
         """
         slots = self._slots[sentence]
         path = self._expected_path(slots, request, weights) if slots else None
-        if path is None and slots and not exact:
+        if path is not None:
+            return path, True
+        if slots and not exact:
             path = self._expected_path(slots, request, weights, others=False)
         if path is not None:
-            return path
+            return path, False
         if self.parts is None:
-            return find_path_by_relaxation(request, TransitionCosts(self.terms, weights, budget_bytes=0)).nodes
-        return find_path_by_relaxation(request, _WeighedWhenAsked(self, weights)).nodes
+            return find_path_by_relaxation(request, TransitionCosts(self.terms, weights, budget_bytes=0)).nodes, True
+        return find_path_by_relaxation(request, _WeighedWhenAsked(self, weights)).nodes, True
 
     def _expected_path(
         self, slots: list[Candidates], request: SearchRequest, weights: SearchWeights, others: bool = True

@@ -19,6 +19,7 @@ from core.progress import SILENT, Progress
 from core.search.transitions import BUDGET_BYTES, TransitionParts
 from core.search.weights import SearchWeights
 
+_UNPROVED = 1.5  # times as much
 Task = tuple[SearchWeights, tuple[int, ...], bool]  # weights, sentences, and whether the answer must be exact
 _CONNECT_S = 10
 _PAGE = 1024  # float32 in a page of memory
@@ -70,12 +71,17 @@ class TuningEvaluator:
         return self.lattice.parts, self.lattice.expected
 
     def error(self, weights: SearchWeights, sentence: int, exact: bool = True) -> float:
-        """Equation 12 of one sentence under ``weights``, mm²; see `TuningLattice.best_path`."""
-        path = self.lattice.best_path(sentence, self.problem.sentences[sentence].request, weights, exact)
+        """Equation 12 of one sentence under ``weights``, mm²; see `TuningLattice.best_path`.
+
+        More where the best path is not known without ``exact``: there it may leave the phonemes that are asked for, and
+        a walk that trusted the error of the path that keeps to them would end where they are worth little.
+        """
+        request = self.problem.sentences[sentence].request
+        path, is_proved = self.lattice.best_path(sentence, request, weights, exact)
         key = sentence, path.tobytes()
         if key not in self._of_path:
             self._of_path[key] = self.problem.error(sentence, path)
-        return self._of_path[key]
+        return self._of_path[key] * (1.0 if is_proved else _UNPROVED)
 
     def errors(self, tasks: Sequence[Task]) -> Iterator[tuple[int, list[float]]]:
         """See `TuningWorkers.errors`."""

@@ -45,7 +45,8 @@ def test_exact_paths_cost_what_the_exhaustive_search_finds(random_motion, seed):
         for i, request in enumerate(requests):
             least = find_path(request, costs, kernels).cost
             for lattice in lattices:
-                path = lattice.best_path(i, request, weights, exact=True)
+                path, is_proved = lattice.best_path(i, request, weights, exact=True)
+                assert is_proved
                 assert priced(path, request, costs).cost == pytest.approx(least, rel=1e-5)
 
 
@@ -72,8 +73,9 @@ def test_the_walk_keeps_to_nodes_that_say_the_phonemes(random_motion):
     weights = replace(default_weights(frames, nodes, 60.0), alpha5=0.0, alpha6=0.0)
     costs = TransitionCosts(terms, weights)
     for i, request in enumerate(requests):
-        path = lattice.best_path(i, request, weights, exact=False)
+        path, is_proved = lattice.best_path(i, request, weights, exact=False)
+        assert not is_proved
         spoken = request.phonemes != PHONEME_INDEX["pau"]
         assert np.array_equal(nodes.phoneme[path[spoken]], request.phonemes[spoken])
-        exact = lattice.best_path(i, request, weights, exact=True)
+        exact, _ = lattice.best_path(i, request, weights, exact=True)
         assert priced(exact, request, costs).cost <= priced(path, request, costs).cost * (1 + 1e-6)
