@@ -13,6 +13,9 @@ log = logging.getLogger("window")
 PICTURE_SIZE = (1600, 1000)
 _PICTURE_LIMIT_MS = 180_000
 _SETTLE_MS = 600
+# Painting takes and gives Python's lock dozens of times, and each time waits this long for a busy worker; at Python's
+# own 5 ms that adds up to a third of a second.
+_SWITCH_S = 0.0005
 
 
 def run_window(project_or_audio: Path | None = None) -> int:
@@ -83,6 +86,7 @@ def _application():
     from app.settings import window_settings
     from app.theme import THEMES, apply_theme
 
+    sys.setswitchinterval(_SWITCH_S)
     if QApplication.instance() is None:
         require_display()
     # it reports each graphics library that a machine lacks; what goes wrong with a film is told in its pane

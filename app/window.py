@@ -46,7 +46,7 @@ class MainWindow(AskingWindow):
         self.motion = MotionPane(authoring)
         self.video = VideoPane(authoring)
         self.isomap = IsomapPane(authoring)
-        self.preview = PreviewPane(authoring, self.motion.face_view)
+        self.preview = PreviewPane(authoring)
         self.timeline = Timeline(authoring)
         self.status = StatusLine(authoring.jobs)
         self._arrange()

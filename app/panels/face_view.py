@@ -10,6 +10,7 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
 
 from app import texts
+from app.face_light import face_light
 from app.panels.marker_links import marker_links
 from app.pictures import FaceRig
 from core.motion.marker_set import MarkerSet
@@ -30,10 +31,8 @@ _STEP_ANGLE = 120.0  # eighths of a degree in one notch of a wheel
 class FaceView(QOpenGLWidget):
     """Shows one pose of a marker set, on a face or bare. GL objects live in the widget's own context."""
 
-    def __init__(self, sibling: FaceView | None = None) -> None:
-        """Make a view; a ``sibling`` that shows the same face lends what it worked out about it."""
+    def __init__(self) -> None:
         super().__init__()
-        self._sibling = sibling
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
         self.setStatusTip(texts.ORBIT_TIP)
         self._renderer: FaceRenderer | None = None
@@ -94,11 +93,6 @@ class FaceView(QOpenGLWidget):
         """Whether a face is drawn, not markers."""
         return self._rig is not None and self._style is not Style.MARKERS
 
-    def light_on(self, rig: FaceRig) -> np.ndarray | None:
-        """Return the light on the face of ``rig``, if it has been worked out here."""
-        ready = self._renderer is not None and self._rig is rig and not self._stale["face"]
-        return self._renderer.light if ready else None
-
     # Camera
 
     def frame_view(self) -> None:
@@ -137,8 +131,10 @@ class FaceView(QOpenGLWidget):
 
     def _upload(self, renderer: FaceRenderer) -> None:
         if self._stale["face"] and self._rig is not None:
-            light = None if self._sibling is None else self._sibling.light_on(self._rig)
+            light = face_light().of(self._rig.face)
             renderer.set_face(self._rig.face, light=light)
+            if light is None:
+                face_light().keep(self._rig.face, renderer.light)
             self._stale["face"] = False
         if self._stale["markers"] and self._markers is not None:
             colours = np.tile(_MARKER_COLOUR, (len(self._markers), 1))

@@ -23,8 +23,8 @@ class PreviewPane(Pane):
 
     pin_asked = Signal()
 
-    def __init__(self, authoring: Authoring, sibling: FaceView) -> None:
-        self.face_view = FaceView(sibling)
+    def __init__(self, authoring: Authoring) -> None:
+        self.face_view = FaceView()
         super().__init__(texts.PREVIEW, self.face_view, texts.ISOMAP_EMPTY)
         self._authoring = authoring
         self.pick: MapPick | None = None

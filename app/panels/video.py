@@ -47,7 +47,10 @@ class VideoView(QWidget):
 
     def paintEvent(self, _event) -> None:
         """Paint the picture."""
-        painter = QPainter(self)
+        with QPainter(self) as painter:
+            self._paint(painter)
+
+    def _paint(self, painter: QPainter) -> None:
         painter.fillRect(self.rect(), colour(FILM_GROUND))
         if self._image is None:
             return

@@ -42,7 +42,11 @@ def test_a_worker_that_allocates_does_not_collect_and_the_main_thread_does(garba
     worker.start()
     worker.join()
     assert died == []
-    made = [[i] for i in range(2 * gc.get_threshold()[0])]
-    qtbot.waitUntil(lambda: bool(died), timeout=5000)
+    kept: list[list] = []
+
+    def is_dead() -> bool:
+        kept.extend([i] for i in range(2 * gc.get_threshold()[0]))
+        return bool(died)
+
+    qtbot.waitUntil(is_dead, timeout=5000)
     assert died == [threading.get_ident()]
-    assert made

@@ -257,7 +257,10 @@ class Timeline(QWidget):
 
     def paintEvent(self, _event) -> None:
         """Paint the kept picture of the lanes, and what moves over it."""
-        painter = QPainter(self)
+        with QPainter(self) as painter:
+            self._paint(painter)
+
+    def _paint(self, painter: QPainter) -> None:
         if self.authoring.document.speech is None:
             painter.fillRect(self.rect(), colour(theme().canvas))
             painter.setPen(colour(theme().dim))
