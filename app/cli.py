@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 from typer.core import TyperGroup
 
+from app.cli_bench import bench
 from app.terminal import clear_failures, end_on_signals, note, print_json, progress_bar, show_log
 from core.errors import UserFacingError
 
@@ -36,7 +37,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False, rich_markup_mode=None, context_settings={"help_option_names": ["-h", "--help"]},
 )  # fmt: skip
 
-bench = typer.Typer(help="Measure, each figure beside a reference run in the same process.", rich_markup_mode=None)
 app.add_typer(bench, name="bench")
 
 OUTPUTS = ".avi, .mp4, .png (numbered), .c3d, .csv or .TextGrid; repeat for more."
@@ -135,7 +135,10 @@ def info(
     json: Json = False,
 ) -> None:
     """Say what a motion database holds."""
-    summary = _open(database).summary()
+    from app.demo import open_named
+
+    with progress_bar("info") as progress:
+        summary = open_named(database, progress).summary()
     if json:
         print_json(summary)
         return
@@ -314,127 +317,6 @@ def export_project(
     else:
         for path in answer["outputs"]:
             print(path)
-
-
-@bench.command("search")
-def bench_search(
-    more: Annotated[list[str] | None, typer.Argument(hidden=True)] = None,
-    db: Database = None,
-    nodes: Annotated[int | None, typer.Option(min=1, help="Repeat or cut the database to this many nodes.")] = None,
-    phonemes: Annotated[list[int] | None, typer.Option(min=1, help="Lengths; the paper's four when absent.")] = None,
-    backends: Annotated[list[str] | None, typer.Option(help="Which to measure; all when absent.")] = None,
-    repeats: Annotated[int, typer.Option(min=1, help="Times are medians of this many runs.")] = 20,
-    json: Json = False,
-) -> None:
-    """Measure the search: cold, after edits, with prices; beside a reference and the memory's speed."""
-    from app import bench
-
-    # several values may follow one option, as in "--phonemes 14 24 --backends opencl glsl"
-    lengths = [word for word in more or [] if word.isdecimal() and int(word)]
-    phonemes = [*(phonemes or []), *map(int, lengths)]
-    backends = [*(backends or []), *(word for word in more or [] if word not in lengths)]
-    database = _open(db)
-    with progress_bar("bench") as progress:
-        answer = bench.bench_search(
-            database, nodes, phonemes or bench.PAPER_LENGTHS, backends or bench.BACKENDS, repeats, progress
-        )
-    if json:
-        print_json(answer)
-    else:
-        print(bench.as_table(answer))
-
-
-@bench.command("growth")
-def bench_growth(
-    db: Database = None,
-    nodes: Annotated[list[int] | None, typer.Option(min=1, help="Sizes; up to 100,000 when absent.")] = None,
-    phonemes: Annotated[list[int] | None, typer.Option(min=1, help="Lengths; the paper's four when absent.")] = None,
-    limit_s: Annotated[float, typer.Option(min=0.0, help="Longest search; its gap is certified.")] = 60.0,
-    pictures: Annotated[Path | None, typer.Option(help="Folder for search-growth.png and search-gap.png.")] = None,
-    json: Json = False,
-) -> None:
-    """Measure how the search grows with database and sentence, and how its certified gap falls with time."""
-    from app import growth_bench
-
-    database = _open(db)
-    with progress_bar("bench") as progress:
-        answer = growth_bench.bench_growth(
-            database, nodes or growth_bench.SIZES, phonemes or growth_bench.PAPER_LENGTHS, limit_s, progress
-        )
-    if pictures is not None:
-        growth_bench.draw(answer, pictures)
-    if json:
-        print_json(answer)
-    else:
-        print(growth_bench.as_table(answer))
-
-
-@bench.command("align")
-def bench_align(
-    corpus: Annotated[Path | None, typer.Argument(help="Folder laid out like GRID; the demo's when absent.")] = None,
-    part: Annotated[str, typer.Option(help="train, tune or test.")] = "test",
-    json: Json = False,
-) -> None:
-    """Measure forced alignment against a corpus's own times."""
-    from app import alignment_bench
-
-    with progress_bar("bench") as progress:
-        answer = alignment_bench.bench_alignment(corpus, part, progress)
-    if json:
-        print_json(answer)
-    else:
-        print(alignment_bench.as_table(answer))
-
-
-@bench.command("maps")
-def bench_maps(db: Database = None, json: Json = False) -> None:
-    """Measure how well the Isomap and the PCA map of each phoneme keep neighbours."""
-    from app import map_bench
-
-    database = _open(db)
-    with progress_bar("bench") as progress:
-        answer = map_bench.bench_maps(database, progress)
-    if json:
-        print_json(answer)
-    else:
-        print(map_bench.as_table(answer))
-
-
-@bench.command("suspicion")
-def bench_suspicion(db: Database = None, json: Json = False) -> None:
-    """Measure how well suspicion finds the demo corpus's planted faults, beside chance and plain distance."""
-    from app import suspicion_bench
-
-    database = _open(db)
-    with progress_bar("bench") as progress:
-        answer = suspicion_bench.bench_suspicion(database, progress)
-    if json:
-        print_json(answer)
-    else:
-        print(suspicion_bench.as_table(answer))
-
-
-@bench.command("window")
-def bench_window(db: Database = None, json: Json = False) -> None:
-    """Measure how long the window keeps an animator waiting, in a session of 200 actions, and how soon it starts."""
-    from app import window_bench
-
-    with progress_bar("bench") as progress:
-        answer = window_bench.bench_window(db, progress)
-    if json:
-        print_json(answer)
-    else:
-        print(window_bench.as_table(answer))
-
-
-def _open(path: Path | None):
-    from app.demo import demo_database
-    from core.motion.database import open_database
-
-    if path is not None:
-        return open_database(path)
-    with progress_bar("demo database") as progress:
-        return demo_database(progress)
 
 
 def _tuning_in_words(tuning: dict) -> str:

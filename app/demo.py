@@ -74,3 +74,8 @@ def demo_database(progress: Progress = SILENT) -> MotionDatabase:
         for older in sorted(path.parent.glob("demo-*.h5"), key=lambda p: p.stat().st_mtime)[:-_KEPT]:
             older.unlink(missing_ok=True)
     return database
+
+
+def open_named(path: Path | None, progress: Progress = SILENT) -> MotionDatabase:
+    """Open a motion database; None means the demo's."""
+    return demo_database(progress) if path is None else open_database(path)

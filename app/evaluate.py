@@ -6,7 +6,7 @@ import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from app.demo import demo_database
+from app.demo import open_named
 from app.report.evaluation import Measured, evaluation_figures, evaluation_page
 from app.report.page import number
 from core.errors import UserFacingError
@@ -16,7 +16,7 @@ from core.evaluation.evaluate import Evaluation, evaluate
 from core.evaluation.phrase_times import phrase_times_s
 from core.evaluation.split import SPLITS, hold_out
 from core.media.swap_in import check_target, swapped_in
-from core.motion.database import MotionDatabase, open_database
+from core.motion.database import MotionDatabase
 from core.motion.readers.corpus_folder import read_corpus
 from core.motion.recording import Recording
 from core.progress import SILENT, Progress
@@ -45,7 +45,7 @@ def run(job: EvaluationJob, progress: Progress = SILENT) -> dict[str, object]:
         raise UserFacingError(f"There is no split '{job.split}'.", f"Choose one of {', '.join(SPLITS)}, all.")
     if job.report is not None:
         check_target(job.report / PAGE, folders_are_made=True)
-    database = open_database(job.database) if job.database else demo_database(progress.part(0.0, 0.1))
+    database = open_named(job.database, progress.part(0.0, 0.1))
     database, name, recordings = _material(job, database, progress.part(0.1, 0.15))
     kernels, _ = open_kernels()
     engines = make_engines(job.engines, database, kernels)

@@ -80,12 +80,11 @@ def open_motion_database(path: Path | None, progress: Progress) -> OpenedDatabas
 
     Its transitions are priced by the first search, so that its maps can be looked at before.
     """
-    from app.demo import demo_database
-    from core.motion.database import open_database
+    from app.demo import open_named
     from gpu.device import open_kernels
 
     progress.step(0.0, texts.OPENING_DATABASE)
-    database = demo_database(progress) if path is None else open_database(path)
+    database = open_named(path, progress)
     kernels, backend = open_kernels()
     removals, trouble = {}, ()
     try:

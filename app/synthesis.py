@@ -8,13 +8,13 @@ import time
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from app.demo import demo_database
+from app.demo import open_named
 from app.export import VideoSettings, check_outputs, export, is_drawn, rounded_seconds
 from app.pictures import FaceRig
 from app.speech import emotion_modifiers, load_speech
 from core.errors import UserFacingError
 from core.face.default_face import FaceUnavailable
-from core.motion.database import MotionDatabase, open_database
+from core.motion.database import MotionDatabase
 from core.motion.stored_weights import named_weights
 from core.progress import SILENT, Progress
 from core.search.engine import SearchAnswer, SearchEngine
@@ -55,7 +55,7 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
     check_outputs(list(job.outputs))
     _check_inputs(job)
     pins = _pins(job.pins)
-    database = open_database(job.database) if job.database else demo_database(progress.part(0.0, 0.1))
+    database = open_named(job.database, progress.part(0.0, 0.1))
     weights = _weights(job, database)
     kernels, backend_sentence = open_kernels(job.backend)
 

@@ -8,14 +8,13 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from app.demo import demo_database
+from app.demo import open_named
 from core.evaluation.tuning import TuningResult, TuningSettings, journal_path, tune
 from core.evaluation.tuning_journal import TuningJournal
 from core.evaluation.tuning_problem import TuningProblem
 from core.evaluation.tuning_workers import cluster_workers, local_workers
 from core.folders import cache_dir
 from core.media.swap_in import check_target
-from core.motion.database import open_database
 from core.motion.stored_weights import AS_PRINTED, SEARCH, forget_weights, store_tuned
 from core.progress import SILENT, Progress
 from core.search.weight_files import write_weights
@@ -45,7 +44,7 @@ def run(job: TuningJob, progress: Progress = SILENT) -> dict[str, object]:
     """
     if job.output is not None:
         check_target(job.output)
-    database = open_database(job.database) if job.database else demo_database(progress.part(0.0, 0.1))
+    database = open_named(job.database, progress.part(0.0, 0.1))
     recordings = database.held_out_recordings(SPLIT)
     check_target(database.path)
     options = PAPER if job.as_printed else SynthesisOptions().single
@@ -96,7 +95,7 @@ def _record(job: TuningJob, result: TuningResult, n_sentences: int, seconds: flo
 
 def forget(path: Path | None, progress: Progress = SILENT) -> dict[str, object]:
     """Give a database its untuned weights back; returns the object of ``--json``."""
-    database = forget_weights(open_database(path) if path else demo_database(progress))
+    database = forget_weights(open_named(path, progress))
     return {"database": str(database.path), "tuned": None, "weights": database.weights.as_dict()}
 
 

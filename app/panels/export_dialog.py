@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QColor
+from PySide6.QtGui import QColor, QIcon
 from PySide6.QtWidgets import (
     QColorDialog,
     QComboBox,
@@ -68,6 +68,7 @@ class ExportDialog(QDialog):
                             texts.SPAN_TIP), (_ALL, texts.SPAN_ALL, texts.SPAN_TIP)])  # fmt: skip
         self.start, self.end = QDoubleSpinBox(decimals=3, suffix=" s"), QDoubleSpinBox(decimals=3, suffix=" s")
         times = QHBoxLayout()
+        times.setSpacing(STEP)
         for widget in (self.span, self.start, label("–", "plain"), self.end):
             times.addWidget(widget)
         times.addStretch(1)
@@ -90,6 +91,8 @@ class ExportDialog(QDialog):
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
         self.export_button = buttons.addButton(texts.EXPORT, QDialogButtonBox.ButtonRole.AcceptRole)
         self.export_button.setDefault(True)
+        self.export_button.setProperty("role", "primary")
+        buttons.button(QDialogButtonBox.StandardButton.Close).setIcon(QIcon())  # the platform's does not know our theme
         column.addWidget(buttons)
         buttons.accepted.connect(self.export)
         buttons.rejected.connect(self.close)

@@ -1,0 +1,135 @@
+"""`efase bench`: figures, each beside a reference run in the same process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from app.terminal import print_json, progress_bar
+from core.progress import Progress
+
+if TYPE_CHECKING:
+    from core.motion.database import MotionDatabase
+
+bench = typer.Typer(help="Measure, each figure beside a reference run in the same process.", rich_markup_mode=None)
+
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
+Database = Annotated[Path | None, typer.Option("--db", help="Motion database; the demo's when absent.")]
+
+
+@bench.command("search")
+def bench_search(
+    more: Annotated[list[str] | None, typer.Argument(hidden=True)] = None,
+    db: Database = None,
+    nodes: Annotated[int | None, typer.Option(min=1, help="Repeat or cut the database to this many nodes.")] = None,
+    phonemes: Annotated[list[int] | None, typer.Option(min=1, help="Lengths; the paper's four when absent.")] = None,
+    backends: Annotated[list[str] | None, typer.Option(help="Which to measure; all when absent.")] = None,
+    repeats: Annotated[int, typer.Option(min=1, help="Times are medians of this many runs.")] = 20,
+    json: Json = False,
+) -> None:
+    """Measure the search: cold, after edits, with prices; beside a reference and the memory's speed."""
+    from app import bench
+
+    # several values may follow one option, as in "--phonemes 14 24 --backends opencl glsl"
+    lengths = [word for word in more or [] if word.isdecimal() and int(word)]
+    phonemes = [*(phonemes or []), *map(int, lengths)]
+    backends = [*(backends or []), *(word for word in more or [] if word not in lengths)]
+    with progress_bar("bench") as progress:
+        database = _open(db, progress)
+        answer = bench.bench_search(
+            database,
+            nodes,
+            phonemes or bench.PAPER_LENGTHS,
+            backends or bench.BACKENDS,
+            repeats,
+            progress.part(0.1, 1.0),
+        )
+    _tell(answer, bench.as_table, json)
+
+
+@bench.command("growth")
+def bench_growth(
+    db: Database = None,
+    nodes: Annotated[list[int] | None, typer.Option(min=1, help="Sizes; up to 100,000 when absent.")] = None,
+    phonemes: Annotated[list[int] | None, typer.Option(min=1, help="Lengths; the paper's four when absent.")] = None,
+    limit_s: Annotated[float, typer.Option(min=0.0, help="Longest search; its gap is certified.")] = 60.0,
+    pictures: Annotated[Path | None, typer.Option(help="Folder for search-growth.png and search-gap.png.")] = None,
+    json: Json = False,
+) -> None:
+    """Measure how the search grows with database and sentence, and how its certified gap falls with time."""
+    from app import growth_bench
+
+    with progress_bar("bench") as progress:
+        database = _open(db, progress)
+        answer = growth_bench.bench_growth(
+            database,
+            nodes or growth_bench.SIZES,
+            phonemes or growth_bench.PAPER_LENGTHS,
+            limit_s,
+            progress.part(0.1, 1.0),
+        )
+    if pictures is not None:
+        growth_bench.draw(answer, pictures)
+    _tell(answer, growth_bench.as_table, json)
+
+
+@bench.command("align")
+def bench_align(
+    corpus: Annotated[Path | None, typer.Argument(help="Folder laid out like GRID; the demo's when absent.")] = None,
+    part: Annotated[str, typer.Option(help="train, tune or test.")] = "test",
+    json: Json = False,
+) -> None:
+    """Measure forced alignment against a corpus's own times."""
+    from app import alignment_bench
+
+    with progress_bar("bench") as progress:
+        answer = alignment_bench.bench_alignment(corpus, part, progress)
+    _tell(answer, alignment_bench.as_table, json)
+
+
+@bench.command("maps")
+def bench_maps(db: Database = None, json: Json = False) -> None:
+    """Measure how well the Isomap and the PCA map of each phoneme keep neighbours."""
+    from app import map_bench
+
+    with progress_bar("bench") as progress:
+        database = _open(db, progress)
+        answer = map_bench.bench_maps(database, progress.part(0.1, 1.0))
+    _tell(answer, map_bench.as_table, json)
+
+
+@bench.command("suspicion")
+def bench_suspicion(db: Database = None, json: Json = False) -> None:
+    """Measure how well suspicion finds the demo corpus's planted faults, beside chance and plain distance."""
+    from app import suspicion_bench
+
+    with progress_bar("bench") as progress:
+        database = _open(db, progress)
+        answer = suspicion_bench.bench_suspicion(database, progress.part(0.1, 1.0))
+    _tell(answer, suspicion_bench.as_table, json)
+
+
+@bench.command("window")
+def bench_window(db: Database = None, json: Json = False) -> None:
+    """Measure how long the window keeps an animator waiting, in a session of 200 actions, and how soon it starts."""
+    from app import window_bench
+
+    with progress_bar("bench") as progress:
+        answer = window_bench.bench_window(db, progress)
+    _tell(answer, window_bench.as_table, json)
+
+
+def _open(path: Path | None, progress: Progress) -> MotionDatabase:
+    from app.demo import open_named
+
+    return open_named(path, progress.part(0.0, 0.1))
+
+
+def _tell(answer: dict[str, object], as_table: Callable[[dict[str, object]], str], json: bool) -> None:
+    if json:
+        print_json(answer)
+    else:
+        print(as_table(answer))
