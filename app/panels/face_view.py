@@ -21,6 +21,8 @@ log = logging.getLogger("gpu")
 
 _DEGREES_PER_PX = 0.4
 _ZOOM_PER_STEP = 1.15
+_DEGREES_PER_KEY = 5.0
+_TURNS = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, 1), Qt.Key.Key_Down: (0, -1)}
 _LIP_COLOUR = (0.93, 0.66, 0.50)
 _MARKER_COLOUR = (0.80, 0.82, 0.85)
 _CAPTURED_COLOUR = (0.42, 0.66, 0.98)
@@ -33,7 +35,7 @@ class FaceView(QOpenGLWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setStatusTip(texts.ORBIT_TIP)
         self._renderer: FaceRenderer | None = None
         self._ctx = None
@@ -222,6 +224,14 @@ class FaceView(QOpenGLWidget):
     def mouseDoubleClickEvent(self, _event) -> None:
         """Frame the view."""
         self.frame_view()
+
+    def keyPressEvent(self, event) -> None:
+        """Turn by Shift and an arrow."""
+        turn = _TURNS.get(event.key())
+        if turn is None or event.modifiers() != Qt.KeyboardModifier.ShiftModifier:
+            super().keyPressEvent(event)
+            return
+        self._move_camera(lambda camera: camera.orbited(*(_DEGREES_PER_KEY * share for share in turn)))
 
     def wheelEvent(self, event) -> None:
         """Zoom."""
