@@ -16,7 +16,8 @@ from core.errors import UserFacingError, WorkstationError
 from core.progress import Progress
 
 _ASK_EVERY_S = 0.05
-_POLITENESS = 5
+# a film that is composed shall not slow the window that it is composed beside
+_POLITENESS = 15
 
 
 class ChildFailure(WorkstationError):
