@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 import soundfile
 
-from app import cli, demo
+import app.demo
+from app import cli
 from app.demo import demo_database, demo_database_path
 from core.actress.corpus import demo_sentences
 from core.errors import UserFacingError
@@ -454,7 +455,7 @@ def test_a_kill_in_the_middle_leaves_nothing_behind(tmp_path, demo, number, expe
 
 def test_our_own_fault_is_a_sentence_too(efase, monkeypatch, tmp_path):
     monkeypatch.setenv("EFASE_CACHE_DIR", str(tmp_path))
-    monkeypatch.setattr(demo, "open_named", lambda path, progress: 1 / 0)
+    monkeypatch.setattr(app.demo, "open_named", lambda path, progress: 1 / 0)
     code, out, err = efase("info")
     assert (code, out) == (1, "")
     assert one_sentence(err)
