@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import ctypes
 import os
 import sys
 from collections.abc import Callable
@@ -76,12 +78,20 @@ class OffscreenRenderer:
     def release(self) -> None:
         """Free the framebuffer and the context."""
         self.ctx.release()
+        _leave_thread()
 
     def __enter__(self) -> OffscreenRenderer:
         return self
 
     def __exit__(self, *_: object) -> None:
         self.release()
+
+
+def _leave_thread() -> None:
+    """Leave the thread without an EGL context: while it has one, released or not, Qt's GLX cannot enter its own."""
+    if sys.platform.startswith("linux"):
+        with contextlib.suppress(OSError):
+            ctypes.CDLL("libEGL.so.1").eglReleaseThread()
 
 
 def _standalone_context() -> moderngl.Context:
