@@ -261,12 +261,7 @@ def synth(
     )  # fmt: skip
     with progress_bar("synth") as progress:
         answer = run(job, progress)
-    _warn(answer["warnings"])
-    if json:
-        print_json(answer)
-    else:
-        for path in answer["outputs"]:
-            print(path)
+    _tell_written(answer, json)
 
 
 @app.command()
@@ -311,6 +306,10 @@ def export_project(
                     None if span is None else span_of_time(span))  # fmt: skip
     with progress_bar("export") as progress:
         answer = run(job, progress)
+    _tell_written(answer, json)
+
+
+def _tell_written(answer: dict, json: bool) -> None:
     _warn(answer["warnings"])
     if json:
         print_json(answer)

@@ -30,7 +30,7 @@ from core.errors import UserFacingError
 from core.motion.curation import Removal
 from core.search.weights import SearchWeights
 from core.speech.emotion import EmotionModifier
-from core.speech.emotion_painting import erased, painted
+from core.speech.emotion_painting import painted
 from core.synthesis.polish import Polish
 
 _gestures = itertools.count()
@@ -80,10 +80,6 @@ class Editing(Looking):
         modifiers = painted(self.document.modifiers, start_s, end_s, emotion, intensity)
         label = texts.EDIT_ERASE_EMOTION if emotion == "neutral" else texts.EDIT_PAINT.format(emotion=emotion)
         self.set_emotion(modifiers, label)
-
-    def erase_emotion(self, start_s: float, end_s: float) -> None:
-        """Take all paint away from ``start_s`` to ``end_s``."""
-        self.set_emotion(erased(self.document.modifiers, start_s, end_s), texts.EDIT_ERASE_EMOTION)
 
     # Phonemes
 

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 
 from app.pictures import STYLES, FaceRig, frames
+from core.document.parts import FaceChoice
 from core.errors import UserFacingError
+from core.face.default_face import FaceUnavailable
 from core.media.audio import Audio
 from core.media.image_sequence import SUFFIX as IMAGE_SUFFIX
 from core.media.image_sequence import numbered, write_images
@@ -178,6 +180,33 @@ def _write_transcript(path: Path, transcript: Transcript | None, settings: Video
     if transcript is None:
         raise UserFacingError(f"There is no transcript to write to '{path}'.")
     write_textgrid(transcript if settings.span_s is None else transcript.between(*settings.span_s), path)
+
+
+def write_outputs(
+    outputs: Sequence[Path],
+    motion: MarkerMotion,
+    audio: Audio,
+    transcript: Transcript,
+    video: VideoSettings,
+    face: FaceChoice,
+    progress: Progress = SILENT,
+) -> list[str]:
+    """Write ``motion`` to every one of ``outputs`` (see `export`); return sentences to warn with.
+
+    Where the face cannot be had, pictures show the markers, and that is one of them.
+    """
+    rig, warnings = None, []
+    if video.style != "markers" and is_drawn(outputs):
+        marker_file = None if face.marker_file is None else Path(face.marker_file)
+        try:
+            rig = FaceRig.of(face.name, motion.markers, marker_file, progress.part(0.0, 0.1))
+        except FaceUnavailable as error:
+            warnings.append(str(error))
+            video = replace(video, style="markers")
+    for i, path in enumerate(outputs):
+        stage = progress.part(0.1 + 0.9 * i / len(outputs), 0.1 + 0.9 * (i + 1) / len(outputs))
+        export(motion, audio, rig, path, video, stage, transcript)
+    return warnings
 
 
 def rounded_seconds(seconds: float) -> float:

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
-from app.export import VideoSettings, check_outputs, export, is_drawn, rounded_seconds
+from app.export import VideoSettings, check_outputs, rounded_seconds, write_outputs
 from app.loading import open_motion_database
-from app.pictures import FaceRig
 from app.project_jobs import database_differences, find_database
 from app.synthesis import phoneme_rows
 from core.document.document import Document
+from core.document.parts import DEFAULT_FACE
 from core.document.project_file import read_project
 from core.errors import UserFacingError
-from core.face.default_face import FaceUnavailable
 from core.media.video import FRAME_RATES
 from core.progress import SILENT, Progress
-from core.search.engine import SearchEngine
 from core.synthesis.polish import polished
 
 
@@ -57,9 +55,8 @@ def run(job: ExportJob, progress: Progress = SILENT) -> dict[str, object]:
     document = Document()
     document.load(content.state(audio, None))
     document.take_database(opened.database, opened.removals)
-    engine = SearchEngine(opened.database, opened.engine.kernels, content.weights)
-    answer = engine.synthesise(document.speech_input(), progress.part(0.2, 0.5))
-
+    opened.engine.reweight(content.weights or opened.database.weights)
+    answer = opened.engine.synthesise(document.speech_input(), progress.part(0.2, 0.5))
     motion = polished(answer.motion, content.polish)
 
     began = time.perf_counter()
@@ -69,18 +66,8 @@ def run(job: ExportJob, progress: Progress = SILENT) -> dict[str, object]:
     style = job.style or ("markers" if content.face is None else "face")
     video = VideoSettings(FRAME_RATES[output.frame_rate], *job.size, style, output.start_frame,
                           output.head_moves, output.head_moves, None, job.background, job.span_s)  # fmt: skip
-    rig = None
-    if style != "markers" and is_drawn(job.outputs):
-        face = document.face or Document().face
-        marker_file = None if face.marker_file is None else Path(face.marker_file)
-        try:
-            rig = FaceRig.of(face.name, opened.database.markers, marker_file, progress.part(0.5, 0.55))
-        except FaceUnavailable as error:
-            warnings.append(str(error))
-            video = replace(video, style="markers")
-    for i, path in enumerate(job.outputs):
-        stage = progress.part(0.55 + 0.45 * i / len(job.outputs), 0.55 + 0.45 * (i + 1) / len(job.outputs))
-        export(motion, audio, rig, path, video, stage, content.transcript)
+    face, stage = document.face or DEFAULT_FACE, progress.part(0.5, 1.0)
+    warnings += write_outputs(job.outputs, motion, audio, content.transcript, video, face, stage)
     return {
         "phonemes": phoneme_rows(content.transcript, answer, opened.database.nodes),
         "cost": answer.path.cost, "optimal": answer.path.is_optimal, "text": content.text,

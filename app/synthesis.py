@@ -5,15 +5,14 @@ from __future__ import annotations
 import os
 import re
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.demo import open_named
-from app.export import VideoSettings, check_outputs, export, is_drawn, rounded_seconds
-from app.pictures import FaceRig
+from app.export import VideoSettings, check_outputs, rounded_seconds, write_outputs
 from app.speech import emotion_modifiers, load_speech
+from core.document.parts import FaceChoice
 from core.errors import UserFacingError
-from core.face.default_face import FaceUnavailable
 from core.motion.database import MotionDatabase
 from core.motion.stored_weights import named_weights
 from core.progress import SILENT, Progress
@@ -72,17 +71,9 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
     if job.backend == "auto" and kernels.report.backend == "numpy" and not kernels.report.lost:
         warnings.append(backend_sentence)
     warnings += answer.warnings
-    rig, video = None, job.video
-    if video.style != "markers" and is_drawn(job.outputs):
-        try:
-            rig = FaceRig.of(job.face, database.markers, job.marker_file, progress.part(0.5, 0.55))
-        except FaceUnavailable as error:
-            warnings.append(str(error))
-            video = replace(video, style="markers")
-    for i, path in enumerate(job.outputs):
-        share = 0.45 / len(job.outputs)
-        stage = progress.part(0.55 + i * share, 0.55 + (i + 1) * share)
-        export(answer.motion, speech.audio, rig, path, video, stage, speech.transcript)
+    face = FaceChoice(job.face, None if job.marker_file is None else str(job.marker_file))
+    stage = progress.part(0.5, 1.0)
+    warnings += write_outputs(job.outputs, answer.motion, speech.audio, speech.transcript, job.video, face, stage)
     seconds = {
         "align": aligned_s, "search": answer.search_s, "synthesis": answer.synthesis_s,
         "render": time.perf_counter() - began,

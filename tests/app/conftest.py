@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import sys
 
 import numpy as np
 import pytest
@@ -164,3 +165,19 @@ def animated(qtbot, open_window, choose, database_path, speech_path):
     qtbot.waitUntil(lambda: window.authoring.document.answer is not None, timeout=WAIT_MS)
     qtbot.waitUntil(lambda: not window.motion.is_empty)
     return window
+
+
+@pytest.fixture
+def efase(monkeypatch, capsys):
+    """Run the command in this process; returns (exit code, stdout, stderr)."""
+
+    from app import cli
+
+    def run(*words):
+        monkeypatch.setattr(sys, "argv", ["efase", *map(str, words)])
+        with pytest.raises(SystemExit) as stop:
+            cli.main()
+        answer = capsys.readouterr()
+        return stop.value.code or 0, answer.out, answer.err
+
+    return run

@@ -14,7 +14,6 @@ import pytest
 import soundfile
 
 import app.demo
-from app import cli
 from app.demo import demo_database, demo_database_path
 from core.actress.corpus import demo_sentences
 from core.errors import UserFacingError
@@ -29,20 +28,6 @@ from gpu.opencl.min_plus import OpenClKernels
 @pytest.fixture(scope="session")
 def demo():
     return demo_database()
-
-
-@pytest.fixture
-def efase(monkeypatch, capsys):
-    """Run the command in this process; returns (exit code, stdout, stderr)."""
-
-    def run(*words):
-        monkeypatch.setattr(sys, "argv", ["efase", *map(str, words)])
-        with pytest.raises(SystemExit) as stop:
-            cli.main()
-        answer = capsys.readouterr()
-        return stop.value.code or 0, answer.out, answer.err
-
-    return run
 
 
 def spoken(emotion="anger"):

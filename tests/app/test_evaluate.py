@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 
@@ -11,7 +10,6 @@ import numpy as np
 import pytest
 import soundfile
 
-from app import cli
 from app.evaluate import ANSWER, PAGE, EvaluationJob, run
 from core.evaluation.split import split_names
 from core.motion.build import BuildSettings, build_database
@@ -60,18 +58,6 @@ def database(corpus, tmp_path_factory):
     path = tmp_path_factory.mktemp("database") / "small.h5"
     build_database(corpus, path, BuildSettings(n_dims=6))
     return path
-
-
-@pytest.fixture
-def efase(monkeypatch, capsys):
-    def run_command(*words):
-        monkeypatch.setattr(sys, "argv", ["efase", *map(str, words)])
-        with pytest.raises(SystemExit) as stop:
-            cli.main()
-        answer = capsys.readouterr()
-        return stop.value.code or 0, answer.out, answer.err
-
-    return run_command
 
 
 @pytest.fixture

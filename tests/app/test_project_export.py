@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import sys
-
 import pytest
 
-from app import cli
 from core.document.content import ProjectContent
 from core.document.document import Document
 from core.document.edits import SetSpeech
@@ -19,19 +16,6 @@ from tests.core.document.random_edits import made_speech
 @pytest.fixture(autouse=True)
 def own_data(tmp_path, monkeypatch):
     monkeypatch.setenv("EFASE_DATA_DIR", str(tmp_path / "data"))
-
-
-@pytest.fixture
-def efase(monkeypatch, capsys):
-    """Run the command in this process; returns (exit code, standard error)."""
-
-    def run(*words):
-        monkeypatch.setattr(sys, "argv", ["efase", *map(str, words)])
-        with pytest.raises(SystemExit) as stop:
-            cli.main()
-        return stop.value.code or 0, capsys.readouterr().err
-
-    return run
 
 
 @pytest.fixture
@@ -63,7 +47,7 @@ def test_what_is_missing_is_one_sentence_and_nothing_is_written(efase, project, 
         (project(True, DatabaseReference("tiny", "0", str(tmp_path / "gone.h5"))), "gone.h5"),
     ]
     for path, sentence in cases:
-        code, said = efase("export", path, "-o", out)
+        code, _, said = efase("export", path, "-o", out)
         assert code == 2 and sentence in said and len(said.splitlines()) == 1
     assert "--db" in said
     assert not out.exists()
@@ -71,7 +55,7 @@ def test_what_is_missing_is_one_sentence_and_nothing_is_written(efase, project, 
 
 def test_another_database_can_be_named_and_the_difference_is_said(efase, project, tmp_path, database_path):
     path = project(True, DatabaseReference("tiny", "0", str(tmp_path / "gone.h5")))
-    code, said = efase("export", path, "-o", tmp_path / "a.csv", "--db", database_path)
+    code, _, said = efase("export", path, "-o", tmp_path / "a.csv", "--db", database_path)
     assert code == 0 and "is not what it was" in said
     positions, _, rate_hz = read_motion(tmp_path / "a.csv")
     assert positions.shape[1:] == (14, 3) and rate_hz == 30.0
@@ -91,6 +75,6 @@ def test_a_file_alone_opens_the_window(efase, project, monkeypatch):
     assert efase(path)[0] == 0
     assert efase()[0] == 0
     assert opened == [path, None]
-    code, said = efase("gone.efase")
+    code, _, said = efase("gone.efase")
     assert code == 2 and "There is no file 'gone.efase'" in said
     assert efase("nonsense")[0] == 2

@@ -4,28 +4,12 @@ from __future__ import annotations
 
 import json
 import shutil
-import sys
 
 import pytest
 
-from app import cli
 from core.motion.build import BuildSettings, build_database
 from core.motion.database import open_database
 from core.search.weight_files import read_weights
-
-
-@pytest.fixture
-def efase(monkeypatch, capsys):
-    """Run the command in this process; returns (exit code, stdout, stderr)."""
-
-    def run(*words):
-        monkeypatch.setattr(sys, "argv", ["efase", *map(str, words)])
-        with pytest.raises(SystemExit) as stop:
-            cli.main()
-        answer = capsys.readouterr()
-        return stop.value.code or 0, answer.out, answer.err
-
-    return run
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QEvent, QPointF, QRectF, Qt, Signal
+from PySide6.QtCore import QEvent, QPointF, Qt, Signal
 
 from app.theme import colour, theme
 
@@ -97,10 +97,6 @@ class MapCanvas(pg.GraphicsView):
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self._box = box
         self.setCentralItem(box)
-
-    def view_px(self) -> QRectF:
-        """Return the area of the plane in pixels."""
-        return QRectF(self.viewport().rect())
 
     def mouseDoubleClickEvent(self, event) -> None:
         """Say what was double-clicked."""

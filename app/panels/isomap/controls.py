@@ -79,19 +79,10 @@ class MapControls(QWidget):
         """What the colours tell."""
         return self.colour.currentData()
 
-    def choose_colours(self, by: ColourBy) -> None:
-        """Choose as a click would."""
-        self.colour.setCurrentIndex(self.colour.findData(by))
-        self.colours_chosen.emit(by)
-
     @property
     def emotions(self) -> list[bool]:
         """Which of `EMOTIONS` are shown."""
         return [self.filters[emotion].isChecked() for emotion in EMOTIONS]
-
-    def show_rho(self, rho: float) -> None:
-        """Tell the ρ that the map is drawn with."""
-        self.rho.setToolTip(texts.RHO_TIP.format(rho=rho))
 
     def show_palette(self) -> None:
         """Paint the signs in the colours of the emotions."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 
 from PySide6.QtCore import QLineF, QRectF, Qt
@@ -31,10 +31,6 @@ class Ruler:
     unit: str = SECONDS
     fps: Fraction = Fraction(30)
     first_frame: int = 0
-
-    def next_unit(self) -> Ruler:
-        """Return the ruler in the unit that comes next."""
-        return replace(self, unit=UNITS[(UNITS.index(self.unit) + 1) % len(UNITS)])
 
     def step_s(self, px_per_s: float) -> float:
         """Return the seconds between two labelled ticks, as few as have room."""
