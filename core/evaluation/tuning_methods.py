@@ -7,6 +7,7 @@ cross many such changes, and a line search that only accepts what really is bett
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -75,7 +76,10 @@ def evolution(space: TuningSpace, starts: np.ndarray, ask: Ask, n_sentences: int
     CMA-ES (Hansen 2006) looks at ranks only, so steps of the error and flat stretches between them do it no harm.
     When a run has settled, the next begins at the next best start.
     """
-    import cma
+    with warnings.catch_warnings():
+        # cma says that it cannot draw without matplotlib, which is no news to who asks it for numbers
+        warnings.filterwarnings("ignore", message="Could not import matplotlib", category=UserWarning)
+        import cma
 
     points = starts.clip(space.low, space.high)
     for share, kept in ((1 / 6, 1 / 4), (1 / 3, 1 / 10), (1.0, 1.0)):
