@@ -9,7 +9,7 @@ import re
 import signal
 import sys
 import traceback
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NoReturn
 
 from core.errors import UserFacingError
@@ -49,6 +49,12 @@ def progress_bar(title: str) -> Iterator[Progress]:
 def note(sentence: str) -> None:
     """Tell the user something on standard error, on one line whatever the files and names in it hold."""
     print(_CONTROL.sub("\N{REPLACEMENT CHARACTER}", sentence), file=sys.stderr)
+
+
+def warn(sentences: Iterable[str]) -> None:
+    """Tell the user what was done otherwise than asked, a line a sentence."""
+    for sentence in sentences:
+        note(f"efase: {sentence}")
 
 
 def print_json(answer: dict) -> None:

@@ -1,0 +1,105 @@
+"""Verbs that make motion: demo, synth, export."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.terminal import note, print_json, progress_bar, warn
+from app.verbs.options import OUTPUTS, Background, Database, Json, Lexicon, Span, Strict
+
+
+def demo(
+    out: Annotated[Path, typer.Option(help="Folder for the pictures and films.")] = Path("out"),
+    json: Json = False,
+) -> None:
+    """Synthesise the demo sentences in four emotions and draw the window, without a display."""
+    from app.headless import write_demo
+
+    with progress_bar("demo") as progress:
+        written = write_demo(out, progress)
+    if json:
+        print_json(written)
+    else:
+        for path in written["outputs"]:
+            print(path)
+        for sentence in written["notes"]:
+            note(sentence)
+
+
+def synth(
+    audio: Annotated[Path, typer.Argument(help="WAV, FLAC or OGG.")],
+    output: Annotated[list[Path], typer.Option("--output", "-o", help=OUTPUTS)],
+    text: Annotated[str | None, typer.Option(help="What is said, or a text file with it.")] = None,
+    phones: Annotated[Path | None, typer.Option(help="TextGrid, label or `start end phone` file instead.")] = None,
+    db: Database = None,
+    emotion: Annotated[str | None, typer.Option(help="neutral, happiness, anger or sadness.")] = None,
+    emotions: Annotated[Path | None, typer.Option(help="Text lines `start end emotion [intensity]`.")] = None,
+    engine: Annotated[str, typer.Option(help="search, search-single (one path) or search-paper (printed).")] = "search",
+    face: Annotated[str, typer.Option(help="default, ben, rosa, otto, pip, or a mesh: OBJ, PLY, glTF.")] = "default",
+    markers: Annotated[Path | None, typer.Option(help="CSV `marker,vertex` for a face of your own.")] = None,
+    backend: Annotated[str, typer.Option(help="auto, numpy, opencl or glsl.")] = "auto",
+    pin: Annotated[list[str] | None, typer.Option(metavar="SLOT=NODE", help="Tie a motion node to a slot.")] = None,
+    weights: Annotated[str, typer.Option(help="tuned (the database's), default (untuned), or a JSON file.")] = "tuned",
+    fps: Annotated[str, typer.Option(help="24, 25, 29.97, 30 or 60.")] = "30",
+    start_frame: Annotated[int, typer.Option(min=0, help="Number of the first frame (timecode).")] = 0,
+    size: Annotated[str, typer.Option(help="Picture size.")] = "640x480",
+    style: Annotated[str, typer.Option(help="face, shaded (without texture), wireframe or markers.")] = "face",
+    texture: Annotated[Path | None, typer.Option(help="PNG or JPEG for a mesh with texture coordinates.")] = None,
+    head: Annotated[bool, typer.Option("--head/--no-head", help="Let the head move, subtly.")] = True,
+    gaze: Annotated[bool, typer.Option("--gaze/--no-gaze", help="Let the eyes wander.")] = True,
+    background: Background = None,
+    span: Span = None,
+    lexicon: Lexicon = None,
+    strict: Strict = False,
+    json: Json = False,
+) -> None:
+    """Animate speech: find the best path through the database and write films or markers."""
+    from app.export import VideoSettings, background_colour, frame_rate, span_of_time, video_size
+    from app.synthesis import SynthesisJob, run
+
+    job = SynthesisJob(
+        audio=audio, outputs=tuple(output), text=text, phones=phones, database=db, emotion=emotion, emotions=emotions,
+        engine=engine, face=face, marker_file=markers, backend=backend, pins=tuple(pin or ()),
+        weights=weights,
+        video=VideoSettings(frame_rate(fps), *video_size(size), style, start_frame, head, gaze, texture,
+                            None if background is None else background_colour(background),
+                            None if span is None else span_of_time(span)),
+        lexicon=lexicon, strict=strict,
+    )  # fmt: skip
+    with progress_bar("synth") as progress:
+        answer = run(job, progress)
+    _tell_written(answer, json)
+
+
+def export_project(
+    project: Annotated[Path, typer.Argument(help="A project (.efase).")],
+    output: Annotated[list[Path], typer.Option("--output", "-o", help=OUTPUTS)],
+    db: Annotated[Path | None, typer.Option("--db", help="Motion database, instead of the project's own.")] = None,
+    size: Annotated[str, typer.Option(help="Picture size.")] = "800x600",
+    style: Annotated[str | None, typer.Option(help="face, shaded, wireframe or markers.")] = None,
+    background: Background = None,
+    span: Span = None,
+    json: Json = False,
+) -> None:
+    """Write films or markers of a project, with the same motion as in the window."""
+    from app.export import background_colour, span_of_time, video_size
+    from app.project_export import ExportJob, run
+
+    job = ExportJob(project, tuple(output), db, video_size(size), style,
+                    None if background is None else background_colour(background),
+                    None if span is None else span_of_time(span))  # fmt: skip
+    with progress_bar("export") as progress:
+        answer = run(job, progress)
+    _tell_written(answer, json)
+
+
+def _tell_written(answer: dict, json: bool) -> None:
+    warn(answer["warnings"])
+    if json:
+        print_json(answer)
+    else:
+        for path in answer["outputs"]:
+            print(path)

@@ -1,0 +1,16 @@
+"""Options that several verbs share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+OUTPUTS = ".avi, .mp4, .png (numbered), .c3d, .csv or .TextGrid; repeat for more."
+Background = Annotated[str | None, typer.Option(help="Colour behind the face, #rrggbb.")]
+Span = Annotated[str | None, typer.Option("--range", metavar="START-END", help="Only this part, in seconds.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
+Database = Annotated[Path | None, typer.Option("--db", help="Motion database; the demo's when absent.")]
+Lexicon = Annotated[Path | None, typer.Option(help="Pronunciations of names and coined words, `word phone phone …`.")]
+Strict = Annotated[bool, typer.Option(help="Refuse phones that are not in the set, instead of taking the nearest.")]
