@@ -9,22 +9,39 @@ import numpy as np
 from core.errors import UserFacingError
 from core.motion.c3d import read_c3d, write_c3d
 from core.motion.marker_csv import read_markers_csv, write_markers_csv
+from core.motion.motion_track import MotionTrack, ReadOptions
 
-__all__ = ["SUFFIXES", "read_motion", "write_c3d", "write_markers_csv"]
+__all__ = ["SUFFIXES", "read_motion", "read_takes", "write_c3d", "write_markers_csv"]
 
 SUFFIXES = (".c3d", ".csv", ".tsv")
 
 
-def read_motion(path: str | Path) -> tuple[np.ndarray, tuple[str, ...], float]:
-    """Read marker motion from .c3d, .csv or .tsv.
+def read_takes(path: str | Path, options: ReadOptions | None = None) -> tuple[MotionTrack, ...]:
+    """Read all takes of a motion file; most kinds hold one.
 
-    Returns positions (float32, shape (F, K, 3), mm, NaN where a marker is missing), the K marker names, and frames
-    a second. Raises `UserFacingError` for a file that is missing, empty, damaged or of another kind.
+    Raises `UserFacingError` for a file that is missing, empty, damaged or of another kind, and its kinds
+    `RateUnknown`, `UnitUnknown` and `PictureSizeUnknown` where ``options`` can help.
     """
-    path = Path(path)
+    path, options = Path(path), options or ReadOptions()
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise UserFacingError(f"'{path}' is no kind of motion file that can be read.", "Use .c3d, .csv or .tsv.")
     if not path.is_file():
         raise UserFacingError(f"There is no motion file '{path}'.")
-    return read_c3d(path) if suffix == ".c3d" else read_markers_csv(path)
+    return (MotionTrack(*(read_c3d(path) if suffix == ".c3d" else read_markers_csv(path))),)
+
+
+def read_motion(path: str | Path, options: ReadOptions | None = None) -> tuple[np.ndarray, tuple[str, ...], float]:
+    """Read one take of marker motion.
+
+    Returns positions (float32, shape (F, K, 3), mm, NaN where a marker is missing), the K marker names, and frames
+    a second. Raises `UserFacingError` for a file that is missing, empty, damaged, of another kind, or that holds
+    several takes or pixels (see `read_takes`).
+    """
+    tracks = read_takes(path, options)
+    if len(tracks) > 1:
+        raise UserFacingError(f"'{path}' holds {len(tracks)} takes, and one is wanted here.")
+    track = tracks[0]
+    if not track.true_scale:
+        raise UserFacingError(f"'{path}' holds points of a picture, not millimetres.", "Import it into a database.")
+    return track.positions, track.names, track.rate_hz
