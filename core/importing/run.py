@@ -1,0 +1,1 @@
+"""An import carried out: read, match, mend, align, build."""
