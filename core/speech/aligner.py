@@ -92,7 +92,7 @@ def align(audio: Audio, text: str, lexicon: Lexicon | None = None, progress: Pro
             break
     else:
         raise UserFacingError(f"The text does not fit {audio.name}.", _REMEDY)
-    placed = _with_phones(aligner, sound, placed, said_in_order, progress.part(0.4, 1.0))
+    placed = with_phones(aligner, sound, placed, said_in_order, progress.part(0.4, 1.0))
     _check_fit(placed, words, audio)
     warnings = [pronunciation.warning for pronunciation in said.values() if pronunciation.warning]
     warnings += _unspoken(text)
@@ -122,7 +122,7 @@ def recognise(audio: Audio, lexicon: Lexicon | None = None, progress: Progress =
     for i, pronunciation in enumerate(said):
         aligner.add_word(i, pronunciation.variants)
     placed = [replace(word, index=i) for i, word in enumerate(heard)]
-    placed = _with_phones(aligner, sound, placed, said, progress.part(0.9, 1.0))
+    placed = with_phones(aligner, sound, placed, said, progress.part(0.9, 1.0))
     text = " ".join(words)
     found = f"The text was recognised, not given: '{text}'." if text else f"No speech is heard in {audio.name}."
     return text, _transcript(placed, words, audio, [found])
@@ -137,7 +137,7 @@ def _hear(sound: SphinxSound, levels: np.ndarray, progress: Progress) -> list[He
     return heard
 
 
-def _with_phones(
+def with_phones(
     aligner: SphinxAligner,
     sound: SphinxSound,
     placed: Sequence[HeardWord],
