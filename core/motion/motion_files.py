@@ -8,8 +8,10 @@ import numpy as np
 
 from core.errors import UserFacingError
 from core.motion.c3d import read_c3d, write_c3d
-from core.motion.marker_csv import read_markers_csv, write_markers_csv
+from core.motion.marker_csv import write_markers_csv
 from core.motion.motion_track import MotionTrack, ReadOptions
+from core.motion.readers.delimited import read_delimited
+from core.motion.readers.marker_text import read_marker_text
 
 __all__ = ["SUFFIXES", "read_motion", "read_takes", "write_c3d", "write_markers_csv"]
 
@@ -28,7 +30,9 @@ def read_takes(path: str | Path, options: ReadOptions | None = None) -> tuple[Mo
         raise UserFacingError(f"'{path}' is no kind of motion file that can be read.", "Use .c3d, .csv or .tsv.")
     if not path.is_file():
         raise UserFacingError(f"There is no motion file '{path}'.")
-    return (MotionTrack(*(read_c3d(path) if suffix == ".c3d" else read_markers_csv(path))),)
+    if suffix == ".c3d":
+        return (MotionTrack(*read_c3d(path)),)
+    return (read_marker_text(read_delimited(path), options),)
 
 
 def read_motion(path: str | Path, options: ReadOptions | None = None) -> tuple[np.ndarray, tuple[str, ...], float]:
