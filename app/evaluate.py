@@ -11,7 +11,6 @@ from app.report.evaluation import Measured, evaluation_figures, evaluation_page
 from app.report.page import number
 from core.errors import UserFacingError
 from core.evaluation.emotion_check import EmotionClassifier, Recognition, tells_emotions
-from core.evaluation.engines.registry import make_engines
 from core.evaluation.evaluate import Evaluation, evaluate
 from core.evaluation.phrase_times import phrase_times_s
 from core.evaluation.split import SPLITS, hold_out
@@ -20,6 +19,7 @@ from core.motion.database import MotionDatabase
 from core.motion.readers.corpus_folder import read_corpus
 from core.motion.recording import Recording
 from core.progress import SILENT, Progress
+from core.synthesis.registry import make_engines
 from gpu.device import open_kernels
 
 PAGE, ANSWER = "report.html", "report.json"
@@ -47,8 +47,7 @@ def run(job: EvaluationJob, progress: Progress = SILENT) -> dict[str, object]:
         check_target(job.report / PAGE, folders_are_made=True)
     database = open_named(job.database, progress.part(0.0, 0.1))
     database, name, recordings = _material(job, database, progress.part(0.1, 0.15))
-    kernels, _ = open_kernels()
-    engines = make_engines(job.engines, database, kernels)
+    engines = make_engines(job.engines, database, lambda: open_kernels()[0])
     found = evaluate(database, recordings, engines, progress.part(0.15, 0.9))
     transcripts = [recording.transcript for recording in recordings]
     times = {}

@@ -11,6 +11,7 @@ class Change(Flag):
     SPEECH : another sound (ALIGNMENT comes with it); ALIGNMENT : what is said, and when
     NODES, CLUSTERS : another database; CURATION : which of its motion nodes are removed
     CONSTRAINTS : pins and locks
+    ENGINE : which engine makes the motion; WEIGHTS : of the search
     OUTPUT : frame rate, first frame, head motion
     POLISH : the layer over the motion
     PATH : what the search found; PRICES : what alternatives to it would cost
@@ -24,6 +25,7 @@ class Change(Flag):
     CURATION = auto()
     CONSTRAINTS = auto()
     EMOTIONS = auto()
+    ENGINE = auto()
     WEIGHTS = auto()
     FACE = auto()
     REFERENCE_VIDEO = auto()
@@ -41,5 +43,11 @@ ANSWER = Change.PATH | Change.MOTION | Change.PRICES
 
 # Whatever of this changes, the path that is shown is no longer the best one.
 ASKED_OF_THE_SEARCH = (
-    Change.ALIGNMENT | Change.NODES | Change.CURATION | Change.CONSTRAINTS | Change.EMOTIONS | Change.WEIGHTS
+    Change.ALIGNMENT
+    | Change.NODES
+    | Change.CURATION
+    | Change.CONSTRAINTS
+    | Change.EMOTIONS
+    | Change.ENGINE
+    | Change.WEIGHTS
 )

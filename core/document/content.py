@@ -32,6 +32,7 @@ from core.search.weights import SearchWeights
 from core.speech.emotion import EmotionModifier
 from core.speech.transcript import Transcript
 from core.synthesis.polish import NO_POLISH, Polish
+from core.synthesis.registry import DEFAULT_ENGINE
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,7 @@ class ProjectContent:
     locks: Mapping[int, str] = field(default_factory=lambda: EMPTY)
     removed_here: Mapping[str, Removal] = field(default_factory=lambda: EMPTY)
     kept: frozenset[str] = frozenset()
+    engine: str = DEFAULT_ENGINE
     weights: SearchWeights | None = None
     face: FaceChoice | None = DEFAULT_FACE
     reference_video: ReferenceVideo | None = None
@@ -68,7 +70,8 @@ class ProjectContent:
             transcript=None if speech is None else speech.transcript,
             text="" if speech is None else speech.text,
             modifiers=document.modifiers, pins=document.pins, locks=document.locks,
-            removed_here=document.removed_here, kept=document.kept, weights=document.weights, face=document.face,
+            removed_here=document.removed_here, kept=document.kept, engine=document.engine,
+            weights=document.weights, face=document.face,
             reference_video=document.reference_video, output=document.output, polish=document.polish,
             database=document.database_reference,
             view=View() if view is None else View(view.slot, view.playhead_s, view.map_phone), others=others,
@@ -81,8 +84,9 @@ class ProjectContent:
             speech = Speech(audio, self.transcript, self.text)
         return ProjectState(
             database=database, database_reference=self.database, speech=speech, modifiers=self.modifiers,
-            pins=self.pins, locks=self.locks, removed_here=self.removed_here, kept=self.kept, weights=self.weights,
-            face=self.face, reference_video=self.reference_video, output=self.output, polish=self.polish,
+            pins=self.pins, locks=self.locks, removed_here=self.removed_here, kept=self.kept, engine=self.engine,
+            weights=self.weights, face=self.face, reference_video=self.reference_video,
+            output=self.output, polish=self.polish,
         )  # fmt: skip
 
     def to_json(self) -> str:
@@ -103,6 +107,7 @@ class ProjectContent:
             "pins": sorted(self.pins.items()), "locks": sorted(self.locks.items()),
             "removed_here": {node: asdict(removal) for node, removal in sorted(self.removed_here.items())},
             "kept": sorted(self.kept),
+            "engine": self.engine,
             "weights": None if self.weights is None else self.weights.as_dict(),
             "face": None if self.face is None else asdict(self.face),
             "reference_video": None if self.reference_video is None else asdict(self.reference_video),
@@ -145,6 +150,7 @@ class ProjectContent:
             locks=door.ties(entries.pop("locks", []), n_slots),
             removed_here=door.removals(entries.pop("removed_here", {})),
             kept=frozenset(door.name_text(node) for node in door.listed(entries.pop("kept", []), door.MOST_NODES)),
+            engine=door.name_text(entries.pop("engine", DEFAULT_ENGINE)),
             weights=door.optional(entries.pop("weights", None), SearchWeights.from_dict),
             face=door.optional(entries.pop("face", asdict(DEFAULT_FACE)), lambda e: FaceChoice(
                 door.name_text(e["name"]), door.optional(e.get("marker_file"), door.name_text))),

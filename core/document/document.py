@@ -22,12 +22,13 @@ from core.document.parts import (
 )
 from core.motion.curation import Removal
 from core.motion.database import MotionDatabase
-from core.search.engine import SearchAnswer
+from core.search.best_path import MotionPath
 from core.search.weights import SearchWeights
 from core.speech.emotion import EmotionModifier
-from core.synthesis.engine import SpeechInput
+from core.synthesis.engine import EngineAnswer, SpeechInput
 from core.synthesis.marker_motion import MarkerMotion
 from core.synthesis.polish import NO_POLISH, Polish
+from core.synthesis.registry import DEFAULT_ENGINE, ENGINES, weights_of
 
 EMPTY: Mapping = MappingProxyType({})
 
@@ -59,6 +60,7 @@ class ProjectState:
     locks: Mapping[int, str] = field(default_factory=lambda: EMPTY)
     removed_here: Mapping[str, Removal] = field(default_factory=lambda: EMPTY)
     kept: frozenset[str] = frozenset()
+    engine: str = DEFAULT_ENGINE
     weights: SearchWeights | None = None
     face: FaceChoice | None = DEFAULT_FACE
     reference_video: ReferenceVideo | None = None
@@ -78,10 +80,12 @@ class Document:
     locks : slot to the public name of the node that was in use when its span was approved
     shared_removals : the database's own curation list, node to who removed it, when and why
     removed_here : nodes that only this project removes; kept : nodes that it uses although the list removes them
+    engine : which engine makes the motion, by its name in `core.synthesis.registry.ENGINES`; one that is not there, of
+        a newer workstation, is kept
     weights : of the search; None for the database's own
     face : None for markers alone
     polish : the layer over the motion
-    answer : what the search found, or None; until a new search answers it may be the one from before an edit
+    answer : what the engine made, or None; until a new one answers it may be the one from before an edit
     motion : the motion on show: that of ``answer`` under the polish, or None
     prices : float64, shape (n_slots, n_nodes), what forcing a node into a slot would add to the cost of ``answer``, in
         the unit of COST; None until they are known
@@ -100,12 +104,13 @@ class Document:
         self.shared_removals: Mapping[str, Removal] = EMPTY
         self.removed_here: Mapping[str, Removal] = EMPTY
         self.kept: frozenset[str] = frozenset()
+        self.engine = DEFAULT_ENGINE
         self.weights: SearchWeights | None = None
         self.face = face
         self.reference_video: ReferenceVideo | None = None
         self.output = DEFAULT_OUTPUT
         self.polish = NO_POLISH
-        self.answer: SearchAnswer | None = None
+        self.answer: EngineAnswer | None = None
         self.motion: MarkerMotion | None = None
         self.prices: np.ndarray | None = None
         self.breakdown: Sequence[Mapping[str, float]] | None = None
@@ -121,8 +126,8 @@ class Document:
         """Undo ``edit`` and tell the views once."""
         self._tell(edit.undo(self), origin)
 
-    def show_answer(self, answer: SearchAnswer, motion: MarkerMotion) -> None:
-        """Take what a search found for the document as it is now, and its motion under the polish.
+    def show_answer(self, answer: EngineAnswer, motion: MarkerMotion) -> None:
+        """Take what an engine made for the document as it is now, and its motion under the polish.
 
         Its prices are still to come.
         """
@@ -175,7 +180,7 @@ class Document:
     # Asking
 
     def speech_input(self) -> SpeechInput | None:
-        """Return the question to the search, frozen; None while there is no speech."""
+        """Return the question to the engine, frozen; None while there is no speech."""
         if self.speech is None:
             return None
         hard, removed = {**self.pins, **self.locks}, self.removed
@@ -183,7 +188,20 @@ class Document:
             known = self.node_names
             hard = {slot: node for slot, node in hard.items() if node in known}
             removed = frozenset(node for node in removed if node in known)
-        return SpeechInput(self.speech.transcript, self.modifiers, hard, removed)
+        return SpeechInput(self.speech.transcript, self.modifiers, hard, removed, self.speech.audio)
+
+    @property
+    def path(self) -> MotionPath | None:
+        """The motion nodes that ``answer`` is made of, the best path where several were blended.
+
+        None while there is no answer, and for an engine that takes no path through the database.
+        """
+        return getattr(self.answer, "path", None)
+
+    @property
+    def has_no_path(self) -> bool:
+        """Whether the engine that is chosen takes no path through the database: no costs, prices, pins or weights."""
+        return self.engine in ENGINES and not ENGINES[self.engine].searches
 
     @property
     def removed(self) -> frozenset[str]:
@@ -206,8 +224,8 @@ class Document:
 
     @property
     def search_weights(self) -> SearchWeights | None:
-        """The weights that the search uses: the project's, else the database's."""
-        return self.weights or (None if self.database is None else self.database.weights)
+        """The weights that the search uses: the project's, else the database's, as the engine takes them."""
+        return self.weights if self.database is None else weights_of(self.engine, self.database, self.weights)
 
     @property
     def cost_unit(self) -> float:
@@ -220,10 +238,10 @@ class Document:
 
         Infinite for a slot that is pinned or locked.
         """
-        if self.prices is None or self.answer is None or self.prices.shape[1] < 2:
+        if self.prices is None or self.path is None or self.prices.shape[1] < 2:
             return None
         others = self.prices.copy()
-        others[range(len(others)), self.answer.path.nodes] = np.inf
+        others[range(len(others)), self.path.nodes] = np.inf
         return others.min(axis=1)
 
     def _tell(self, change: Change, origin: object) -> None:

@@ -16,6 +16,7 @@ from core.motion.database import MotionDatabase
 from core.search.weights import SearchWeights
 from core.speech.emotion import EmotionModifier
 from core.synthesis.polish import Polish
+from core.synthesis.registry import engine_kind
 
 # Two of these are the same only if they are one object; to compare their arrays would take long.
 _BY_IDENTITY = ("database", "speech")
@@ -145,7 +146,9 @@ class LockSlots(FieldEdit):
         slots = sorted(set(slots))
         if document.answer is None or document.database is None:
             raise UserFacingError("There is no motion to lock yet.", "Synthesise first (Ctrl+Return).")
-        used = document.answer.path.nodes
+        if document.path is None:
+            raise UserFacingError("The motion on show is no path of motion nodes.", "Choose a search as the engine.")
+        used = document.path.nodes
         names = {slot: document.database.nodes.name(used[slot]) for slot in slots if 0 <= slot < len(used)}
         locks = MappingProxyType({**document.locks, **names})
         return cls.setting(document, f"Lock {_slots_in_words(document, slots)}", Change.CONSTRAINTS, locks=locks)
@@ -187,6 +190,15 @@ class SetWeights(FieldEdit):
         return cls.setting(document, label, Change.WEIGHTS, gesture=gesture, weights=weights)
 
 
+class SetEngine(FieldEdit):
+    """Let another engine make the motion, one of `core.synthesis.registry.ENGINES`."""
+
+    @classmethod
+    def on(cls, document: Document, engine: str) -> SetEngine:
+        """Return the edit for ``document`` as it is now; raises `UserFacingError` for an engine that there is not."""
+        return cls.setting(document, f"Choose engine “{engine_kind(engine).title}”", Change.ENGINE, engine=engine)
+
+
 class SetReferenceVideo(FieldEdit):
     """Show another film of the actor, none, or the same at another offset."""
 
@@ -224,8 +236,8 @@ class RestoreVersion(FieldEdit):
         "speech": Change.SPEECH | Change.ALIGNMENT, "database": Change.NODES | Change.CLUSTERS,
         "database_reference": Change.NODES | Change.CLUSTERS, "modifiers": Change.EMOTIONS, "pins": Change.CONSTRAINTS,
         "locks": Change.CONSTRAINTS, "removed_here": Change.CURATION, "kept": Change.CURATION,
-        "weights": Change.WEIGHTS, "face": Change.FACE, "reference_video": Change.REFERENCE_VIDEO,
-        "output": Change.OUTPUT, "polish": Change.POLISH,
+        "engine": Change.ENGINE, "weights": Change.WEIGHTS, "face": Change.FACE,
+        "reference_video": Change.REFERENCE_VIDEO, "output": Change.OUTPUT, "polish": Change.POLISH,
     })  # fmt: skip
 
     @classmethod

@@ -32,11 +32,15 @@ class SpeechInput:
 
 
 class EngineAnswer(Protocol):
-    """Motion, and whatever else an engine has to say about it."""
+    """Motion, and whatever else an engine has to say about it; a search adds the ``path`` that it took."""
 
     @property
     def motion(self) -> MarkerMotion:
         """The motion, from time 0 to the end of the transcript."""
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the user should know of it, a sentence each."""
 
 
 class MotionEngine(Protocol):

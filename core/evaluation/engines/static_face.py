@@ -17,6 +17,7 @@ class PlainAnswer:
     """Motion, and nothing to say about it."""
 
     motion: MarkerMotion
+    warnings: tuple[str, ...] = ()
 
 
 class StaticFace:

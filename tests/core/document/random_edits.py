@@ -18,6 +18,7 @@ from core.document.edits import (
     FieldEdit,
     PinMotionNode,
     SetEmotion,
+    SetEngine,
     SetFace,
     SetOutput,
     SetPolish,
@@ -36,6 +37,7 @@ from core.speech.emotion_painting import erased, painted
 from core.speech.phoneme import PHONEMES
 from core.speech.transcript import PhonemeUtterance, Transcript, WordUtterance
 from core.synthesis.polish import REGIONS
+from core.synthesis.registry import ENGINES
 
 RATE_HZ = 8000
 
@@ -87,6 +89,7 @@ def random_edit(document: Document, chance: random.Random) -> Edit | None:
         lambda: FieldEdit.setting(
             document, "Weigh", Change.WEIGHTS, weights=chance.choice((None, SearchWeights(pnt=chance.uniform(1, 5e4))))
         ),
+        lambda: SetEngine.on(document, chance.choice(tuple(ENGINES))),
         lambda: FieldEdit.setting(
             document, "Lock", Change.CONSTRAINTS, locks=MappingProxyType({**document.locks, slot: node})
         ),

@@ -14,7 +14,16 @@ from core.document.change import Change
 from core.document.content import ProjectContent
 from core.document.curation_edits import RemoveMotionNodes, RestoreMotionNodes
 from core.document.document import Document
-from core.document.edits import LockSlots, PinMotionNode, SetDatabase, SetEmotion, SetFace, SetSpeech, UnlockSlots
+from core.document.edits import (
+    LockSlots,
+    PinMotionNode,
+    SetDatabase,
+    SetEmotion,
+    SetEngine,
+    SetFace,
+    SetSpeech,
+    UnlockSlots,
+)
 from core.document.parts import FaceChoice
 from core.document.view_state import ViewState
 from core.errors import UserFacingError
@@ -231,3 +240,22 @@ def test_a_lock_keeps_what_is_in_use_and_no_pin_may_differ(document):
 def test_another_database_keeps_the_pins(document):
     document.apply(SetDatabase.on(document, Database({})))
     assert document.pins == {0: "s1:0"}
+
+
+def test_another_engine_is_an_edit_and_one_that_there_is_not_is_told(document):
+    edit = SetEngine.on(document, "search-single")
+    assert edit.do(document) == Change.ENGINE and document.engine == "search-single"
+    assert "best path alone" in edit.label
+    assert not document.has_no_path
+    document.apply(SetEngine.on(document, "static"))
+    assert document.has_no_path
+    edit.undo(document)
+    assert document.engine == "search"
+    with pytest.raises(UserFacingError, match="no engine 'magic'"):
+        SetEngine.on(document, "magic")
+
+
+def test_a_motion_without_a_path_cannot_be_locked(document):
+    document.database, document.answer = SimpleNamespace(maps={}), SimpleNamespace(motion=None)
+    with pytest.raises(UserFacingError, match="no path of motion nodes"):
+        LockSlots.on(document, [1])

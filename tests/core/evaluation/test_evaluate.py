@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from core.errors import UserFacingError
-from core.evaluation.engines.registry import ENGINES, make_engines
 from core.evaluation.evaluate import evaluate
 from core.progress import Cancelled, Progress
 from core.search.compute import NumpyKernels
 from core.synthesis.marker_motion import MarkerMotion
+from core.synthesis.registry import ENGINES, make_engines
 
 
 class Recorder:
@@ -38,7 +38,7 @@ class Recorder:
 @pytest.fixture(scope="module")
 def evaluation(mouth_database):
     recordings = mouth_database.held_out_recordings("test")
-    return evaluate(mouth_database, recordings, make_engines([], mouth_database, NumpyKernels()))
+    return evaluate(mouth_database, recordings, make_engines([], mouth_database, NumpyKernels))
 
 
 def test_each_engine_is_asked_for_each_sentence_in_its_own_emotion(mouth_database):
@@ -123,4 +123,4 @@ def test_the_sound_that_is_kept_reaches_the_engine(mouth_corpus, tmp_path):
 
 def test_an_unknown_engine_is_refused_by_name(mouth_database):
     with pytest.raises(UserFacingError, match="no engine 'magic'"):
-        make_engines(["static", "magic"], mouth_database, NumpyKernels())
+        make_engines(["static", "magic"], mouth_database, NumpyKernels)

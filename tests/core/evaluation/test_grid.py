@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import pytest
 
-from core.evaluation.engines.registry import make_engines
 from core.evaluation.evaluate import evaluate
 from core.evaluation.split import hold_out
 from core.motion.build import build_database
 from core.motion.readers.corpus_folder import read_corpus
 from core.search.compute import NumpyKernels
+from core.synthesis.registry import make_engines
 
 
 @pytest.mark.prove
 def test_static_face_and_phone_means_are_as_far_off_as_elsewhere(shared_data, tmp_path):
     database = build_database(hold_out(read_corpus(shared_data("grid-s1"))), tmp_path / "grid.h5")
-    engines = make_engines(["static", "phone-means"], database, NumpyKernels())
+    engines = make_engines(["static", "phone-means"], database, NumpyKernels)
     found = evaluate(database, database.held_out_recordings("test"), engines)
     static, means = (found.engines[name].scores for name in engines)
     assert static.lip_error_mm == pytest.approx(2.19, abs=0.1)
