@@ -2,32 +2,27 @@
 
 from __future__ import annotations
 
-import hashlib
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial.transform import Rotation
-from threadpoolctl import threadpool_limits
 
 from core.errors import UserFacingError
-from core.manifold.isomap import PhonemeMap
 from core.media.swap_in import swapped_in
-from core.motion.captured_sentence import CapturedSentence
+from core.motion.captures import KeptCapture
 from core.motion.corpus import Corpus
 from core.motion.database import MotionDatabase, write_database
-from core.motion.head_space import LONGEST_GAP_S, in_head_space
+from core.motion.head_space import LONGEST_GAP_S
+from core.motion.maps import make_maps
 from core.motion.marker_set import MarkerSet
-from core.motion.node import NodeTable, NodeTableBuilder
-from core.motion.normalise import HeadMotion
+from core.motion.motion_part import MotionPart
 from core.motion.pca import MotionPca
+from core.motion.prepared import PreparedSentence, prepare
 from core.motion.recording import Recording
-from core.motion.resample import frame_bounds, resample
 from core.motion.rest_pose import choose_rest_pose
 from core.progress import SILENT, Progress
 from core.search.terms import default_weights
-from core.speech.emotion import EMOTION_INDEX
-from core.speech.phoneme import PHONEME_INDEX
 
 
 @dataclass(frozen=True)
@@ -37,64 +32,102 @@ class BuildSettings:
     rate_hz : frames a second of the database
     n_dims : PCA dimensions
     longest_gap_s : marker gaps up to this long are filled; frames of longer ones are masked out
+    keep_captures : store the faces beside their coefficients, so that the components can be fitted anew to them when
+        the database has grown; 12 bytes a marker and frame
     """
 
     rate_hz: float = 120.0
     n_dims: int = 25
     longest_gap_s: float = LONGEST_GAP_S
-
-
-@dataclass
-class _Processed:
-    """A sentence in head space at the database's rate."""
-
-    recording: Recording
-    face: np.ndarray
-    head: HeadMotion
-    masked: np.ndarray
-    n_filled: int
+    keep_captures: bool = False
 
 
 def build_database(
-    corpus: Corpus, path: Path, settings: BuildSettings | None = None, progress: Progress = SILENT
+    corpus: Corpus,
+    path: Path,
+    settings: BuildSettings | None = None,
+    progress: Progress = SILENT,
+    about: Mapping[str, object] | None = None,
 ) -> MotionDatabase:
     """Build the motion database of ``corpus`` and store it at ``path``.
 
     Sentences that the corpus holds out lie in the file as they were captured, and take no part in rest pose, principal
     components, nodes, maps and weights. The file is written beside ``path`` and swapped in at the end, so that a cut
-    leaves what was there before. Raises `UserFacingError` when the corpus has no usable sentence or the target cannot
-    be written.
+    leaves what was there before. ``about``, plain JSON, is kept in the database's report. Raises `UserFacingError` when
+    the corpus has no usable sentence or the target cannot be written.
     """
     settings = settings or BuildSettings()
-    _check_corpus(corpus)
+    check_corpus(corpus)
     path = Path(path)
     apart = {name for names in corpus.held_out.values() for name in names}
     held_out = [r for r in corpus.recordings if r.sentence in apart]
     seen = replace(corpus, recordings=[r for r in corpus.recordings if r.sentence not in apart])
     columns = np.array([corpus.recordings[0].marker_names.index(name) for name in corpus.kept_markers])
     markers = _marker_set(seen, columns)
-
-    processed = []
-    n = len(seen.recordings)
-    for s, recording in enumerate(seen.recordings):
-        progress.step(0.25 * s / n, f"normalising {recording.sentence}")
-        processed.append(_process(recording, markers, corpus.with_scale, settings))
-
+    prepared = prepare_all(seen.recordings, markers, corpus.with_scale, settings, progress.part(0.0, 0.25))
     progress.step(0.25, "fitting principal components")
-    pca = MotionPca.fit((p.face[~p.masked] for p in processed), settings.n_dims)
-    database = _assemble(seen, settings, markers, pca, processed)
-    if len(database.nodes) == 0:
+    pca = MotionPca.fit((p.face[~p.masked] for p in prepared), settings.n_dims)
+    part, left_out = MotionPart.of_prepared(prepared, pca, settings.rate_hz)
+    if len(part.nodes) == 0:
         raise UserFacingError(f"The corpus '{corpus.name}' has no phoneme with motion, so there is nothing to search.")
-    maps = make_maps(database, progress.part(0.3, 0.95))
-    database = replace(
-        database, maps=maps, weights=default_weights(database.frames, database.nodes, database.rate_hz).in_context
-    )
+    report = {
+        **(about or {}),
+        "captured_rate_hz": seen.recordings[0].rate_hz,
+        "longest_gap_s": settings.longest_gap_s,
+        **what_was_done(prepared, left_out),
+    }
+    captures = kept_captures(prepared) if settings.keep_captures else ()
+    if not settings.keep_captures:
+        prepared = []  # the faces are the largest thing here, and the maps want room
+    database = MotionDatabase(
+        name=corpus.name, synthetic=corpus.synthetic, rate_hz=settings.rate_hz, markers=markers, pca=pca,
+        frames=part.frames, head_rotation=part.head_rotation, head_translation=part.head_translation,
+        nodes=part.nodes, sentences=part.sentences,
+        maps=make_maps(part.frames, part.nodes, progress.part(0.3, 0.95)),
+        weights=default_weights(part.frames, part.nodes, settings.rate_hz).in_context,
+        content_hash=part.content_hash(markers, pca), with_scale=corpus.with_scale, held_out=corpus.held_out,
+        report=report,
+    )  # fmt: skip
     progress.step(0.95, "writing the database")
-    audio = {r.sentence: _flac(r) for r in corpus.recordings if r.audio is not None}
-    return _store(database, path, audio, held_out)
+    return _store(database, path, sounds(corpus.recordings), held_out, captures)
 
 
-def _check_corpus(corpus: Corpus) -> None:
+def prepare_all(
+    recordings: Sequence[Recording], markers: MarkerSet, with_scale: bool, settings: BuildSettings, progress: Progress
+) -> list[PreparedSentence]:
+    """Bring all recordings into head space, at the rate of the database."""
+    prepared = []
+    for s, recording in enumerate(recordings):
+        progress.step(s / len(recordings), f"normalising {recording.sentence}")
+        prepared.append(prepare(recording, markers, with_scale, settings.rate_hz, settings.longest_gap_s))
+    return prepared
+
+
+def what_was_done(prepared: Sequence[PreparedSentence], left_out: int) -> dict[str, int]:
+    """Return the counts of the database's report."""
+    return {
+        "marker_samples_filled": sum(p.n_filled for p in prepared),
+        "frames_masked": int(sum(p.masked.sum() for p in prepared)),
+        "phones_left_out": left_out,
+    }
+
+
+def kept_captures(prepared: Iterable[PreparedSentence]) -> Iterable[tuple[str, KeptCapture]]:
+    """Return what is stored of each sentence with `BuildSettings.keep_captures`."""
+    return ((p.recording.sentence, KeptCapture(p.face, p.masked)) for p in prepared)
+
+
+def sounds(recordings: Iterable[Recording]) -> Iterable[tuple[str, bytes]]:
+    """Yield name and FLAC file of each sentence that has sound."""
+    from core.media.audio import encode_flac, load_audio
+
+    for recording in recordings:
+        if recording.audio is not None:
+            yield recording.sentence, encode_flac(load_audio(recording.audio))
+
+
+def check_corpus(corpus: Corpus) -> None:
+    """Check names, markers and what is held out; raises `UserFacingError`."""
     if not corpus.recordings:
         raise UserFacingError(f"The corpus '{corpus.name}' has no sentence.")
     names = [r.sentence for r in corpus.recordings]
@@ -144,105 +177,17 @@ def _marker_set(corpus: Corpus, columns: np.ndarray) -> MarkerSet:
     return MarkerSet(names, rest, groups, landmarks)
 
 
-def _process(recording: Recording, markers: MarkerSet, with_scale: bool, settings: BuildSettings) -> _Processed:
-    captured = in_head_space(recording, markers, with_scale, settings.longest_gap_s)
-    face, head, masked = captured.face, captured.head, captured.masked
-    n_frames = max(1, round(recording.transcript.duration_s * settings.rate_hz))
-    turn = Rotation.from_matrix(head.rotation).as_rotvec()
-    tracks = np.concatenate([face.reshape(len(face), -1), turn, head.translation, head.scale[:, None]], axis=1)
-    raised = resample(tracks, recording.rate_hz, settings.rate_hz, n_frames)
-    head = HeadMotion(Rotation.from_rotvec(raised[:, -7:-4]).as_matrix(), raised[:, -4:-1], raised[:, -1])
-    nearest = np.minimum(np.arange(n_frames) * recording.rate_hz / settings.rate_hz, len(masked) - 1)
-    masked_now = masked[np.floor(nearest).astype(int)] | masked[np.ceil(nearest).astype(int)]
-    # sound may run on after the capture has ended: those frames would be made up
-    masked_now |= np.arange(n_frames) / settings.rate_hz > (len(masked) + 1) / recording.rate_hz
-    return _Processed(recording, raised[:, :-7].reshape(n_frames, len(markers), 3), head, masked_now, captured.n_filled)
-
-
-def _assemble(
-    corpus: Corpus, settings: BuildSettings, markers: MarkerSet, pca: MotionPca, processed: list[_Processed]
+def _store(
+    database: MotionDatabase,
+    path: Path,
+    audio: Iterable[tuple[str, bytes]],
+    held_out: Sequence[Recording],
+    captures: Iterable[tuple[str, KeptCapture]],
 ) -> MotionDatabase:
-    builder = NodeTableBuilder()
-    sentences, first, left_out = [], 0, 0
-    for p in processed:
-        transcript = p.recording.transcript
-        start, stop = frame_bounds([u.start_s for u in transcript.phonemes], [u.end_s for u in transcript.phonemes],
-                                   settings.rate_hz)  # fmt: skip
-        left_out += builder.add_sentence(
-            p.recording.sentence, EMOTION_INDEX[p.recording.emotion], [PHONEME_INDEX[x] for x in transcript.phones],
-            start, stop, p.masked, first,
-        )  # fmt: skip
-        sentences.append(CapturedSentence(p.recording.sentence, p.recording.emotion, p.recording.text, first,
-                                          first + len(p.face), transcript))  # fmt: skip
-        first += len(p.face)
-    with threadpool_limits(1):  # as in `MotionPca.fit`: equal captures give equal bytes
-        frames = np.concatenate([pca.coefficients(p.face) for p in processed]).astype(np.float32)
-    turns = np.concatenate([Rotation.from_matrix(p.head.rotation).as_rotvec() for p in processed]).astype(np.float32)
-    moves = np.concatenate([p.head.translation for p in processed]).astype(np.float32)
-    nodes = builder.table()
-    report = {
-        "captured_rate_hz": processed[0].recording.rate_hz,
-        "marker_samples_filled": sum(p.n_filled for p in processed),
-        "frames_masked": int(sum(p.masked.sum() for p in processed)),
-        "phones_left_out": left_out,
-        "longest_gap_s": settings.longest_gap_s,
-    }
-    return MotionDatabase(
-        name=corpus.name, synthetic=corpus.synthetic, rate_hz=settings.rate_hz, markers=markers, pca=pca,
-        frames=frames, head_rotation=turns, head_translation=moves, nodes=nodes, sentences=tuple(sentences), maps={},
-        weights=None, content_hash=_content_hash(markers, pca, frames, nodes), with_scale=corpus.with_scale,
-        held_out=corpus.held_out, report=report,
-    )  # fmt: skip
-
-
-def _content_hash(markers: MarkerSet, pca: MotionPca, frames: np.ndarray, nodes: NodeTable) -> str:
-    digest = hashlib.sha256(markers.to_json().encode())
-    columns = [getattr(nodes, name) for name in NodeTable.COLUMNS]
-    for array in (markers.rest, pca.mean, pca.basis, frames, *columns):
-        digest.update(np.ascontiguousarray(array).tobytes())
-    digest.update("\n".join(nodes.sentence_names).encode())
-    return digest.hexdigest()
-
-
-def cluster_frames(nodes: NodeTable, phoneme: int) -> np.ndarray:
-    """Return the rows of all frames of a phoneme cluster, int64, node after node."""
-    rows = np.flatnonzero(nodes.phoneme == phoneme)
-    return np.concatenate([np.arange(nodes.start[n], nodes.stop[n]) for n in rows]).astype(np.int64)
-
-
-def make_maps(database: MotionDatabase, progress: Progress = SILENT) -> dict[str, PhonemeMap]:
-    """Make the map of every phoneme cluster, largest first, on all cores when there is much to do."""
-    from joblib import Parallel, delayed
-
-    from core.speech.phoneme import PHONEMES
-
-    clusters = {PHONEMES[p]: cluster_frames(database.nodes, p) for p in np.unique(database.nodes.phoneme)}
-    order = sorted(clusters, key=lambda phone: -len(clusters[phone]))
-    jobs = (delayed(_map_of)(phone, clusters[phone], database.frames[clusters[phone]]) for phone in order)
-    workers = -1 if len(database.frames) > 60_000 else 1  # starting processes costs more than a small corpus
-    maps = {}
-    for phone, made in Parallel(n_jobs=workers, return_as="generator_unordered")(jobs):
-        maps[phone] = made
-        progress.step(len(maps) / len(order), f"map of /{phone}/ made")
-    return {phone: maps[phone] for phone in sorted(maps)}
-
-
-def _map_of(phone: str, rows: np.ndarray, frames: np.ndarray) -> tuple[str, PhonemeMap]:
-    with threadpool_limits(1):
-        return phone, PhonemeMap.make(rows, frames.astype(float))
-
-
-def _flac(recording: Recording) -> bytes:
-    from core.media.audio import encode_flac, load_audio
-
-    return encode_flac(load_audio(recording.audio))
-
-
-def _store(database: MotionDatabase, path: Path, audio: dict[str, bytes], held_out: list[Recording]) -> MotionDatabase:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise UserFacingError(f"The folder '{path.parent}' cannot be made: {error.strerror}.") from error
     with swapped_in(path) as beside:
-        write_database(database, beside, audio, held_out)
+        write_database(database, beside, audio, held_out, captures)
     return replace(database, path=path)

@@ -24,6 +24,7 @@ class Corpus:
     outer_eye_mm : with ``with_scale``, the distance of the outer eye corners that sets the millimetre
     synthetic : the motion was made by a program, and is called so wherever it is shown
     held_out : sentence names by split (``tune``, ``test``) that stay out of the database
+    report : what was done to the recordings before; it travels with the database's own report
     """
 
     name: str
@@ -36,3 +37,4 @@ class Corpus:
     outer_eye_mm: float | None = None
     synthetic: bool = False
     held_out: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    report: Mapping[str, object] = field(default_factory=dict)

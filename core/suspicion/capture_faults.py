@@ -58,6 +58,21 @@ class FaultScores:
             self.score[span], self.frame[span], self.step[span] = score, frame, step
 
 
+@dataclass(frozen=True)
+class Excursion:
+    """What left and came back.
+
+    start, stop : the frames that stand off; fault : spike or swap, by their number
+    strength : whitened size of the jump and its undoing; step : the jump in the track's units, shape (n_dims,)
+    """
+
+    start: int
+    stop: int
+    fault: Fault
+    strength: float
+    step: np.ndarray
+
+
 def capture_faults(
     track: np.ndarray,
     rate_hz: float,
@@ -78,28 +93,40 @@ def capture_faults(
     span_of = np.full(len(track) + 1, -1)
     for i, (start, stop) in enumerate(zip(starts, stops, strict=True)):
         span_of[start:stop] = i
-    size = jumps.size
-    paired = np.zeros(len(size), bool)
-    for strength, i, j in undone_pairs(jumps, round(LONGEST_SWAP_S * rate_hz)):
-        if paired[i] or paired[j]:
-            continue
-        paired[[i, j]] = True
-        left, back = int(jumps.at[i]), int(jumps.at[j])
-        fault = Fault.SPIKE if back - left <= round(LONGEST_SPIKE_S * rate_hz) else Fault.SWAP
+    found, alone = excursions(jumps, rate_hz)
+    for excursion in found:
+        left, back = excursion.start, excursion.stop
         for span in np.unique(span_of[left:back]):
             if span >= 0:
                 inside = min(back, int(stops[span])) - max(left, int(starts[span]))
-                score = float(jumps.deviations(strength * inside / (back - left)))
-                scores[fault].raise_to(span, score, max(left, int(starts[span])), jumps.step[i])
-    for i in np.flatnonzero(~paired):
+                score = float(jumps.deviations(excursion.strength * inside / (back - left)))
+                scores[excursion.fault].raise_to(span, score, max(left, int(starts[span])), excursion.step)
+    for i in alone:
         at = int(jumps.at[i])
         span = span_of[at - 1]
         if span >= 0:
             gone = np.asarray(track[at - 1], float) - track[starts[span]]
             drifted = gone @ jumps.step[i] < _DRIFTED * (jumps.step[i] @ jumps.step[i])
             fault = Fault.DRIFT if drifted else Fault.FREEZE
-            scores[fault].raise_to(span, float(jumps.deviations(size[i])), at, jumps.step[i])
+            scores[fault].raise_to(span, float(jumps.deviations(jumps.size[i])), at, jumps.step[i])
     return scores
+
+
+def excursions(jumps: Jumps, rate_hz: float) -> tuple[list[Excursion], np.ndarray]:
+    """Pair each jump with the one that undoes it, the strongest pair first.
+
+    returns : the excursions, and the rows of the jumps that none undoes
+    """
+    found: list[Excursion] = []
+    paired = np.zeros(len(jumps.at), bool)
+    for strength, i, j in undone_pairs(jumps, round(LONGEST_SWAP_S * rate_hz)):
+        if paired[i] or paired[j]:
+            continue
+        paired[[i, j]] = True
+        left, back = int(jumps.at[i]), int(jumps.at[j])
+        fault = Fault.SPIKE if back - left <= round(LONGEST_SPIKE_S * rate_hz) else Fault.SWAP
+        found.append(Excursion(left, back, fault, strength, jumps.step[i]))
+    return found, np.flatnonzero(~paired)
 
 
 def undone_pairs(jumps: Jumps, longest_frames: int) -> list[tuple[float, int, int]]:
