@@ -15,6 +15,8 @@ from scipy.spatial import Delaunay, QhullError
 
 from core.progress import SILENT, Progress
 
+_DISTANCES_AT_ONCE = 10_000_000
+
 
 class PhonemeIsomap:
     """Isomap of the frames of one phoneme cluster.
@@ -59,10 +61,11 @@ class PhonemeIsomap:
         self.n_landmarks_ = len(landmarks) if len(landmarks) < n else 0
         rows = []
         for first in range(0, len(landmarks), 200):  # in pieces, so that a cancel is heard
-            rows.append(dijkstra(graph, directed=False, indices=landmarks[first : first + 200]))
+            # the graph holds each edge both ways, and one-way search is a third faster
+            rows.append(dijkstra(graph, indices=landmarks[first : first + 200]))
             progress.step(0.2 + 0.6 * first / len(landmarks), "measuring geodesics")
         geodesics = np.concatenate(rows)
-        self.embedding_ = _landmark_mds(geodesics, landmarks, self.n_components)
+        self.embedding_ = landmark_mds(geodesics, landmarks, self.n_components)
         self.residual_variance_ = _residual_variance(geodesics, self.embedding_, landmarks)
         return self
 
@@ -71,7 +74,7 @@ def joined_neighbour_graph(frames: np.ndarray, n_neighbors: int) -> tuple[csr_ma
     """Return the neighbour graph of ``frames``, made whole, and the number of edges that this took.
 
     Edges carry Euclidean distances. Components are joined by a shortest spanning tree of them (Borůvka's method: in
-    each round every component takes its shortest edge to another one).
+    each round every component but the largest takes its shortest edge to another one).
     """
     from sklearn.neighbors import NearestNeighbors
 
@@ -97,27 +100,41 @@ def joined_neighbour_graph(frames: np.ndarray, n_neighbors: int) -> tuple[csr_ma
 
 
 def _shortest_bridges(frames: np.ndarray, part: np.ndarray, n_parts: int) -> set[tuple[int, int, float]]:
-    """One edge for each component: its shortest to a frame outside, as (lower row, higher row, length)."""
+    """One edge for each component but the largest: its shortest to a frame outside, as (lower row, higher row, length).
+
+    The largest is left out because it alone may hold nearly all frames; whatever joins it, the others find.
+    """
     squares = (frames**2).sum(axis=1)
+    largest = np.bincount(part).argmax()
+    rows = np.flatnonzero(part != largest)
     best = np.full(n_parts, np.inf)
     edge = np.zeros((n_parts, 2), int)
-    for first in range(0, len(frames), 1000):
-        block = slice(first, first + 1000)
+    at_once = max(1, _DISTANCES_AT_ONCE // len(frames))
+    for first in range(0, len(rows), at_once):
+        block = rows[first : first + at_once]
         distance = squares[block, None] + squares[None] - 2 * frames[block] @ frames.T
         distance[part[block, None] == part[None]] = np.inf
         nearest = distance.argmin(axis=1)
         shortest = distance[np.arange(len(nearest)), nearest]
-        for row in np.argsort(shortest, kind="stable"):
-            own = part[first + row]
-            if shortest[row] < best[own]:
-                best[own] = shortest[row]
-                edge[own] = sorted((first + row, nearest[row]))
+        for i in np.argsort(shortest, kind="stable"):
+            own = part[block[i]]
+            if shortest[i] < best[own]:
+                best[own] = shortest[i]
+                edge[own] = sorted((block[i], nearest[i]))
+    edge = np.delete(edge, largest, axis=0)
     lengths = np.linalg.norm(frames[edge[:, 0]] - frames[edge[:, 1]], axis=1)
     return {(int(i), int(j), float(length)) for (i, j), length in zip(edge, lengths)}
 
 
-def _landmark_mds(geodesics: np.ndarray, landmarks: np.ndarray, n_components: int) -> np.ndarray:
-    """Classical scaling of the landmarks, and every other point placed by its distances to them."""
+def landmark_mds(geodesics: np.ndarray, landmarks: np.ndarray, n_components: int) -> np.ndarray:
+    """Classical scaling of the landmarks, and every other point placed by its distances to them.
+
+    de Silva and Tenenbaum 2002: x = -½ L# (δ - μ), δ a point's squared distances to the landmarks, μ their mean among
+    the landmarks, L# the eigenvectors of the centred matrix over the roots of their eigenvalues.
+
+    geodesics : shape (n_landmarks, n), from each landmark to all points; landmarks : int, shape (n_landmarks,)
+    returns : float64, shape (n, n_components); 0 in dimensions that the distances do not span
+    """
     n_landmarks, n = geodesics.shape
     squared = geodesics**2
     among = squared[:, landmarks]
@@ -134,7 +151,7 @@ def _landmark_mds(geodesics: np.ndarray, landmarks: np.ndarray, n_components: in
     real = values > max(values.max(initial=0.0), 0.0) * 1e-12
     vectors = vectors * np.sign(vectors[np.abs(vectors).argmax(axis=0), np.arange(vectors.shape[1])])
     placing = vectors[:, real] / np.sqrt(values[real])
-    embedding[:, np.flatnonzero(real)] = -0.5 * (squared - mean[:, None]).T @ placing
+    embedding[:, np.flatnonzero(real)] = -0.5 * (squared.T @ placing - mean @ placing)
     return embedding
 
 
@@ -155,7 +172,8 @@ class PhonemeMap:
     frames : int64, shape (n,), rows of the database's frames
     embedding : float32, shape (n, 2), Isomap; pca : float32, shape (n, 2), the linear map kept for comparison
     triangles : int32, shape (n_triangles, 3), Delaunay triangles over ``embedding``
-    n_joined, n_landmarks, residual_variance : as in `PhonemeIsomap`
+    n_joined, n_landmarks, residual_variance : as in `PhonemeIsomap`, when the map was made
+    n_placed : frames that came later and were placed on the finished map (see `core.manifold.placing`)
     """
 
     frames: np.ndarray
@@ -165,6 +183,7 @@ class PhonemeMap:
     n_joined: int
     n_landmarks: int
     residual_variance: float
+    n_placed: int = 0
 
     @classmethod
     def make(cls, rows: np.ndarray, coefficients: np.ndarray, progress: Progress = SILENT) -> PhonemeMap:
@@ -182,13 +201,14 @@ class PhonemeMap:
     def summary(self) -> dict[str, object]:
         """Return counts and quality for `efase info`."""
         return {"frames": len(self.frames), "joined": self.n_joined, "landmarks": self.n_landmarks,
-                "residual_variance": round(self.residual_variance, 4)}  # fmt: skip
+                "residual_variance": round(self.residual_variance, 4), "placed": self.n_placed}  # fmt: skip
 
     def write(self, group) -> None:
         """Store into an HDF5 group."""
         for name in ("frames", "embedding", "pca", "triangles"):
             group.create_dataset(name, data=getattr(self, name))
-        group.attrs.update(n_joined=self.n_joined, n_landmarks=self.n_landmarks, residual=self.residual_variance)
+        group.attrs.update(n_joined=self.n_joined, n_landmarks=self.n_landmarks, residual=self.residual_variance,
+                           n_placed=self.n_placed)  # fmt: skip
 
 
 def delaunay_triangles(points: np.ndarray) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -47,13 +47,12 @@ def build_database(
     path: Path,
     settings: BuildSettings | None = None,
     progress: Progress = SILENT,
-    about: Mapping[str, object] | None = None,
 ) -> MotionDatabase:
     """Build the motion database of ``corpus`` and store it at ``path``.
 
     Sentences that the corpus holds out lie in the file as they were captured, and take no part in rest pose, principal
     components, nodes, maps and weights. The file is written beside ``path`` and swapped in at the end, so that a cut
-    leaves what was there before. ``about``, plain JSON, is kept in the database's report. Raises `UserFacingError` when
+    leaves what was there before. What the corpus reports goes into the database's report. Raises `UserFacingError` when
     the corpus has no usable sentence or the target cannot be written.
     """
     settings = settings or BuildSettings()
@@ -71,7 +70,7 @@ def build_database(
     if len(part.nodes) == 0:
         raise UserFacingError(f"The corpus '{corpus.name}' has no phoneme with motion, so there is nothing to search.")
     report = {
-        **(about or {}),
+        **corpus.report,
         "captured_rate_hz": seen.recordings[0].rate_hz,
         "longest_gap_s": settings.longest_gap_s,
         **what_was_done(prepared, left_out),

@@ -6,7 +6,8 @@ import contextlib
 import json
 import logging
 import math
-from collections.abc import Iterator, Mapping, Sequence
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -16,6 +17,7 @@ import numpy as np
 from core.errors import UserFacingError
 from core.manifold.isomap import PhonemeMap
 from core.motion.captured_sentence import CapturedSentence
+from core.motion.captures import KeptCapture, write_capture
 from core.motion.database_checks import (
     Unsound,
     check_held_out,
@@ -35,7 +37,7 @@ from core.motion.recording import Recording
 from core.search.weights import SearchWeights
 
 FORMAT = "efase-motion-database"
-VERSION = (1, 1)  # 1.1: held-out recordings, and whether each frame was scaled
+VERSION = (1, 2)  # 1.1: held-out recordings, and whether each frame was scaled; 1.2: kept captures, placed frames
 REMAKE = "Remake it with `efase build`, or open another one."
 # Whatever h5py, numpy and json raise for files that were cut, overwritten or made up.
 _DAMAGE = (OSError, KeyError, ValueError, IndexError, TypeError, AttributeError, ArithmeticError, RuntimeError,
@@ -117,15 +119,13 @@ class MotionDatabase:
 
         Raises `UserFacingError` when the database holds out none, or its file is damaged.
         """
-        import h5py
-
         names = self.held_out.get(split, ())
         if self.path is None or not names:
             raise UserFacingError(
                 f"The database '{self.name}' holds out no sentences for '{split}'.",
                 "Build it with `efase build --hold-out`, or name a corpus folder with --corpus.",
             )
-        with _damage_told(self.path), h5py.File(self.path, "r") as file:
+        with self.open_file() as file:
             return read_held_out(file, names, self.markers)
 
     def audio_bytes(self, sentence: str) -> bytes | None:
@@ -138,6 +138,10 @@ class MotionDatabase:
             if f"audio/{sentence}" not in file:
                 return None
             return stored(file, f"audio/{sentence}", np.uint8).tobytes()
+
+    def open_file(self) -> contextlib.AbstractContextManager:
+        """Open the stored file to read what does not come with `open_database`; damage is told as it is there."""
+        return _opened(self.path)
 
     def summary(self) -> dict[str, object]:
         """Return what `efase info` prints: counts, coverage, rate, content hash."""
@@ -174,14 +178,20 @@ def open_database(path: Path) -> MotionDatabase:
 
     Raises `UserFacingError` when it is missing, not an eFASE database, from a newer major version, or damaged.
     """
-    import h5py
-
     path = Path(path)
     if not path.is_file():
         raise UserFacingError(f"There is no motion database at '{path}'.", "Build one with `efase build`.")
-    with _damage_told(path), h5py.File(path, "r") as file:
+    with _opened(path) as file:
         _check_version(file, path)
         return _read(file, path)
+
+
+@contextlib.contextmanager
+def _opened(path: Path) -> Iterator:
+    import h5py
+
+    with _damage_told(path), h5py.File(path, "r") as file:
+        yield file
 
 
 @contextlib.contextmanager
@@ -249,11 +259,15 @@ def _read(file, path: Path) -> MotionDatabase:
 
 
 def write_database(
-    database: MotionDatabase, path: Path, audio: Mapping[str, bytes], held_out: Sequence[Recording] = ()
+    database: MotionDatabase,
+    path: Path,
+    audio: Iterable[tuple[str, bytes]] = (),
+    held_out: Sequence[Recording] = (),
+    captures: Iterable[tuple[str, KeptCapture]] = (),
 ) -> None:
-    """Store ``database``, the FLAC sound of its sentences, and what is held out at ``path``.
+    """Store ``database``, the FLAC sound of its sentences, what is held out, and captures that are kept, at ``path``.
 
-    Raises `OSError` if the disk refuses.
+    When this returns, the disk has it. Raises `OSError` if the disk refuses.
     """
     import h5py
 
@@ -281,11 +295,16 @@ def write_database(
         for phone, phoneme_map in database.maps.items():
             phoneme_map.write(file.create_group(f"maps/{phone}"))
         write_held_out(file, held_out, database.markers.names)
-        for sentence, flac in audio.items():
+        for sentence, flac in audio:
             file.create_dataset(f"audio/{sentence}", data=np.frombuffer(flac, np.uint8))
+        for sentence, capture in captures:
+            write_capture(file, sentence, capture)
         file.flush()
         image = file.id.get_file_image()
-    path.write_bytes(image)
+    with path.open("wb") as target:
+        target.write(image)
+        target.flush()
+        os.fsync(target.fileno())  # or a power cut after the swap could leave neither the old nor the new
 
 
 def _weights(values: object) -> SearchWeights:
@@ -312,4 +331,5 @@ def _map(file, phone: str, n_frames: int) -> PhonemeMap:
     quality = float(attrs["residual"])
     if not math.isfinite(quality):
         raise Unsound(f"the map of /{phone}/ is not finite")
-    return PhonemeMap(*arrays, int(attrs["n_joined"]), int(attrs["n_landmarks"]), quality)
+    counts = (int(attrs["n_joined"]), int(attrs["n_landmarks"]), quality, int(attrs.get("n_placed", 0)))
+    return PhonemeMap(*arrays, *counts)
