@@ -11,11 +11,13 @@ from core.motion.c3d import read_c3d, write_c3d
 from core.motion.marker_csv import write_markers_csv
 from core.motion.motion_track import MotionTrack, ReadOptions
 from core.motion.readers.delimited import read_delimited
+from core.motion.readers.landmark_arrays import read_landmark_arrays
 from core.motion.readers.marker_text import read_marker_text
+from core.motion.trc import read_trc, write_trc
 
-__all__ = ["SUFFIXES", "read_motion", "read_takes", "write_c3d", "write_markers_csv"]
+__all__ = ["SUFFIXES", "read_motion", "read_takes", "write_c3d", "write_markers_csv", "write_trc"]
 
-SUFFIXES = (".c3d", ".csv", ".tsv")
+SUFFIXES = (".c3d", ".trc", ".csv", ".tsv", ".npz")
 
 
 def read_takes(path: str | Path, options: ReadOptions | None = None) -> tuple[MotionTrack, ...]:
@@ -27,11 +29,17 @@ def read_takes(path: str | Path, options: ReadOptions | None = None) -> tuple[Mo
     path, options = Path(path), options or ReadOptions()
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
-        raise UserFacingError(f"'{path}' is no kind of motion file that can be read.", "Use .c3d, .csv or .tsv.")
+        raise UserFacingError(
+            f"'{path}' is no kind of motion file that can be read.", "Use .c3d, .trc, .csv, .tsv or .npz."
+        )
     if not path.is_file():
         raise UserFacingError(f"There is no motion file '{path}'.")
     if suffix == ".c3d":
         return (MotionTrack(*read_c3d(path)),)
+    if suffix == ".trc":
+        return (read_trc(path, options),)
+    if suffix == ".npz":
+        return read_landmark_arrays(path, options)
     return (read_marker_text(read_delimited(path), options),)
 
 

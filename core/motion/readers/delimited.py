@@ -18,6 +18,9 @@ LARGEST_BYTES = 1 << 30
 HEAD_LINES = 64
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _SAMPLED_ROWS = 50
+_SPARSEST = 16
+# far beyond any place, in any unit
+_LARGEST = float(np.finfo(np.float32).max) / 1e4
 
 
 @dataclass(frozen=True)
@@ -46,19 +49,26 @@ class DelimitedText:
         """Tell whether line ``row`` has nothing but empty cells."""
         return not self.lines[row].strip(" \t,;\"'")
 
-    def numbers(self, first_row: int, n_columns: int, columns: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
+    def numbers(
+        self, first_row: int, n_columns: int, columns: Sequence[int], ends_early: int = 0
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Read the rows from ``first_row`` to the end, or to a blank line with text behind it (another section).
 
         n_columns : cells that a row must have; more are allowed where they are empty
         columns : which cells to read
+        ends_early : the last cells of a row may be left out in groups of this many; 0: none may
         returns : float64, shape (F, len(columns)), NaN where a cell is empty, and the line of each frame, from 1.
             Raises `UserFacingError` naming the line of what is no number.
         """
         rows = self._data_rows(first_row)
+        self._check_size(rows, n_columns, ends_early)
         comma = self._has_decimal_commas(rows[:_SAMPLED_ROWS], columns)
         table = np.empty((len(rows), len(columns)))
         for f, row in enumerate(rows):
             cells = self.cells(row) if '"' in self.lines[row] else self.lines[row].split(self.delimiter)
+            lacking = n_columns - len(cells)
+            if lacking > 0 and ends_early and lacking % ends_early == 0:
+                cells = [*cells, *[""] * lacking]
             if len(cells) < n_columns or any(cell.strip() for cell in cells[n_columns:]):
                 raise UserFacingError(f"'{self.path}', line {row + 1}: {len(cells)} cells; the header has {n_columns}.")
             chosen = [cells[c] for c in columns]
@@ -83,6 +93,14 @@ class DelimitedText:
                     raise UserFacingError(f"'{self.path}', line {row + 1} is empty, and more rows follow.")
                 return range(first_row, row)
         return range(first_row, stop)
+
+    def _check_size(self, rows: range, n_columns: int, ends_early: int) -> None:
+        """Refuse, before memory is asked for, a table that is mostly what its rows leave out."""
+        length = sum(len(self.lines[row]) + 1 for row in rows)
+        if len(rows) * n_columns <= length * (_SPARSEST if ends_early else 1):
+            return
+        row = next(row for row in rows if len(self.lines[row]) + 1 < n_columns)
+        raise UserFacingError(f"'{self.path}', line {row + 1}: the header has {n_columns} cells, the line has fewer.")
 
     def _has_decimal_commas(self, rows: range, columns: Sequence[int]) -> bool:
         sample = [cells[c] for row in rows for cells in [self.cells(row)] for c in columns if c < len(cells)]
@@ -126,6 +144,27 @@ def _delimiter(head: list[str]) -> str:
     """Tab or semicolon where there are about as many of them as of commas, which then are decimal ones."""
     counts = {d: sum(line.count(d) for line in head) for d in "\t;,"}
     return next((d for d in "\t;" if counts[d] and 2 * counts[d] >= counts[","]), ",")
+
+
+def check_places(points: np.ndarray, lines: np.ndarray, path: Path) -> None:
+    """Raise `UserFacingError` for an infinite coordinate and make a point NaN, in place, that lacks an axis.
+
+    points : shape (F, K, 2 or 3); lines : shape (F,), where in the file each frame was
+    """
+    beyond = np.abs(points) > _LARGEST
+    if beyond.any():
+        raise UserFacingError(f"'{path}', line {lines[beyond.any(axis=(1, 2)).argmax()]}: a coordinate is infinite.")
+    points[np.isnan(points).any(axis=2)] = np.nan
+
+
+def first_repeated(names: Sequence[str]) -> str | None:
+    """Return the first name that comes a second time, or None."""
+    seen: set[str] = set()
+    for name in names:
+        if name in seen:
+            return name
+        seen.add(name)
+    return None
 
 
 def is_number(cell: str) -> bool:

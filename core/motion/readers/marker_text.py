@@ -15,14 +15,13 @@ from core.errors import UserFacingError
 from core.motion.frame_rate import check_rate_hz, rate_of_times
 from core.motion.length_units import median_span, mm_per, unit_by_span
 from core.motion.motion_track import MotionTrack, RateUnknown, ReadOptions
-from core.motion.readers.delimited import DelimitedText
+from core.motion.readers.delimited import DelimitedText, check_places
 from core.motion.readers.landmarks import are_landmarks, in_pixels, landmark_names
 from core.motion.readers.table_layout import TableLayout, table_layout
 
 # a table with one row a point may leave out this share of its points and frames, and no more
 _SPARSEST = 4
 _SMALLEST_FACE_MM = 50.0
-_LARGEST = float(np.finfo(np.float32).max) / 1e4
 
 
 def read_marker_text(text: DelimitedText, options: ReadOptions) -> MotionTrack:
@@ -43,11 +42,7 @@ def read_marker_text(text: DelimitedText, options: ReadOptions) -> MotionTrack:
     if not len(points):
         raise UserFacingError(f"'{text.path}' has 0 frames.")
     rate_hz = _rate_hz(text.path, layout, options, times_s, lines)
-    infinite = np.abs(points) > _LARGEST
-    if infinite.any():
-        raise UserFacingError(f"'{text.path}', line {lines[infinite.any(axis=(1, 2)).argmax()]}: a coordinate is "
-                              "infinite.")  # fmt: skip
-    points[np.isnan(points).any(axis=2)] = np.nan
+    check_places(points, lines, text.path)
     notes = list(layout.notes)
     if layout.zero_is_missing:
         _drop_zeros(points, notes)

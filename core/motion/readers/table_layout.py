@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from core.errors import UserFacingError
 from core.motion.readers.column_names import axis_column, bare_axis, is_frame, is_length, time_factor
-from core.motion.readers.delimited import HEAD_LINES, DelimitedText, is_number
+from core.motion.readers.delimited import HEAD_LINES, DelimitedText, first_repeated, is_number
 
 _RATES = ("export frame rate", "frame rate", "framerate", "capture frame rate", "frequency", "datarate", "data rate",
           "sample rate", "fps", "rate")  # fmt: skip
@@ -198,7 +198,7 @@ def _qualisys(text: DelimitedText, above: list, row: int, cells: list[str]) -> T
         first += 1
     heads = next((text.cells(r) for r in range(row + 1, first) if text.cells(r)[0].lower() == "frame"), [])
     start = 2 if heads else 0
-    if not names or len(set(names)) != len(names):
+    if not names or first_repeated(names) is not None:
         raise UserFacingError(f"'{text.path}', line {row + 1}: markers have no names, or the same one.")
     points = {name: tuple(range(start + 3 * k, start + 3 * k + 3)) for k, name in enumerate(names)}
     return TableLayout(points, first, start + 3 * len(names), rate_hz=_stated_rate(above), unit="mm", capital=True)

@@ -6,8 +6,6 @@ corners 90 mm apart, y and z flipped so that y is up and z towards the camera.
 
 from __future__ import annotations
 
-import zipfile
-import zlib
 from importlib.resources import files
 from pathlib import Path
 
@@ -17,12 +15,12 @@ from core.errors import UserFacingError
 from core.media.audio import load_audio
 from core.motion.corpus import Corpus
 from core.motion.marker_table import parse_marker_table
+from core.motion.readers.npy import read_npz
 from core.motion.recording import Recording, is_sentence_name
 from core.progress import SILENT, Progress
 from core.speech.transcript_files import read_transcript
 
 OUTER_EYE_MM = 90.0
-_MOST_BYTES = 1 << 30  # an hour of 148 points at 120 Hz is 384 MiB; more is refused before memory is asked for
 _DIMS = {"xyz64": 3, "start": 1, "clips": 1, "landmark_index": 1, "fps": 0}
 _KINDS = {"xyz64": "iuf", "start": "iu", "clips": "U", "landmark_index": "iu", "fps": "iuf"}
 
@@ -72,26 +70,8 @@ def read_tracked_points(folder: Path, progress: Progress = SILENT) -> Corpus:
 
 
 def _load(path: Path) -> dict[str, np.ndarray]:
-    try:
-        # numpy leaves the file open when the archive is damaged, unless it is given an open one
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
-            missing = [name for name in _DIMS if name not in archive.files]
-            if missing:
-                raise UserFacingError(f"'{path}' has no array '{missing[0]}'.")
-            oversized = [m.filename for m in archive.zip.infolist() if m.file_size > _MOST_BYTES]
-            if oversized:
-                raise UserFacingError(f"'{oversized[0]}' in '{path}' is larger than {_MOST_BYTES >> 20} MiB.")
-            return {name: archive[name] for name in _DIMS}
-    except (
-        OSError,
-        ValueError,
-        zipfile.BadZipFile,
-        zlib.error,
-        EOFError,
-        KeyError,
-        AttributeError,
-        NotImplementedError,
-        RuntimeError,
-        MemoryError,
-    ) as error:
-        raise UserFacingError(f"'{path}' is not a readable track file.") from error
+    arrays = read_npz(path, _DIMS)
+    missing = [name for name in _DIMS if name not in arrays]
+    if missing:
+        raise UserFacingError(f"'{path}' has no array '{missing[0]}'.")
+    return arrays
