@@ -1,0 +1,1 @@
+"""The import assistant: a studio's captures in, step by step."""

@@ -1,0 +1,182 @@
+"""The assistant's window: steps at the left, one page at a time, and what is going on below."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QSize, Qt
+from PySide6.QtGui import QKeySequence, QShortcut
+from PySide6.QtWidgets import (
+    QFileDialog,
+    QFrame,
+    QHBoxLayout,
+    QListWidget,
+    QListWidgetItem,
+    QPushButton,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.authoring import Authoring
+from app.icons import icon
+from app.jobs import JobRunner
+from app.panels.importing.draft import ImportDraft
+from app.panels.importing.files_page import FilesPage
+from app.panels.importing.page import Page
+from app.panels.message_bar import MessageBar
+from app.panels.status import StatusLine
+from app.settings import last_folder, remember_folder, window_settings
+from app.texts import importing as texts
+from app.theme import STEP, theme
+
+_STEPS_PX = 200
+_SIZE = (1240, 780)
+_FOLDER = "captures"
+
+
+class ImportWindow(QWidget):
+    """Non-modal; it keeps its plan while it is closed. Closing it does not stop a build that goes on."""
+
+    def __init__(self, authoring: Authoring, parent: QWidget | None = None) -> None:
+        super().__init__(parent, Qt.WindowType.Window)
+        self.authoring = authoring
+        self.jobs = JobRunner(self)
+        self.draft = ImportDraft(self.jobs, self)
+        self._settings = window_settings()
+        self.setWindowTitle(texts.TITLE)
+        self.setWindowIcon(icon("workstation"))
+        self.message = MessageBar()
+        self.steps = QListWidget(toolTip=texts.STEPS_TIP)
+        self.pages: tuple[Page, ...] = self._make_pages()
+        self._stack = QStackedWidget()
+        for page in self.pages:
+            self._stack.addWidget(page)
+            self.steps.addItem(QListWidgetItem(page.title))
+        self._arrange()
+        self.steps.currentRowChanged.connect(self.on_step)
+        self.draft.changed.connect(self._show_states)
+        self.draft.learnt.connect(self._show_states)
+        self.draft.failed.connect(self.message.say)
+        self.draft.noted.connect(self.status.say)
+        self._add_keys()
+        self.steps.setCurrentRow(0)
+        self._show_states()
+
+    def _make_pages(self) -> tuple[Page, ...]:
+        self.files = FilesPage(self.draft)
+        return (self.files,)
+
+    def _arrange(self) -> None:
+        t = theme()
+        self.steps.setFixedWidth(_STEPS_PX)
+        self.steps.setStyleSheet(
+            f"QListWidget {{ background: {t.ground}; border: none; border-right: 1px solid {t.line}; border-radius: 0;"
+            f" padding-top: {STEP}px; }}"
+            f"QListWidget::item {{ padding: {STEP}px {2 * STEP}px; border-left: 2px solid transparent; }}"
+            f"QListWidget::item:selected {{ background: {t.raised}; border-left: 2px solid {t.accent}; }}"
+        )
+        self.load_button = QPushButton(texts.LOAD_PLAN, toolTip=texts.LOAD_PLAN_TIP)
+        self.save_button = QPushButton(texts.SAVE_PLAN, toolTip=texts.SAVE_PLAN_TIP)
+        self.over_button = QPushButton(texts.START_OVER, toolTip=texts.START_OVER_TIP)
+        self.back_button = QPushButton(texts.BACK, toolTip=texts.BACK_TIP)
+        self.next_button = QPushButton(texts.NEXT, toolTip=texts.NEXT_TIP)
+        for button in (self.load_button, self.save_button, self.over_button):
+            button.setProperty("role", "quiet")
+        row = QHBoxLayout()
+        row.setContentsMargins(2 * STEP, STEP, 3 * STEP, STEP)
+        row.setSpacing(STEP)
+        for button in (self.load_button, self.save_button, self.over_button):
+            row.addWidget(button)
+        row.addStretch(1)
+        for button in (self.back_button, self.next_button):
+            row.addWidget(button)
+        self.load_button.clicked.connect(self.ask_load)
+        self.save_button.clicked.connect(self.ask_save)
+        self.over_button.clicked.connect(self.draft.start_over)
+        self.back_button.clicked.connect(lambda: self.step(-1))
+        self.next_button.clicked.connect(lambda: self.step(1))
+        self.status = StatusLine(self.jobs)
+        middle = QHBoxLayout()
+        middle.setSpacing(0)
+        middle.addWidget(self.steps)
+        middle.addWidget(self._stack, 1)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self.message)
+        column.addLayout(middle, 1)
+        column.addWidget(_rule())
+        column.addLayout(row)
+        column.addWidget(_rule())
+        column.addWidget(self.status)
+
+    def _add_keys(self) -> None:
+        keys = {"Alt+Left": lambda: self.step(-1), "Alt+Right": lambda: self.step(1), "Ctrl+O": self.ask_load,
+                "Ctrl+S": self.ask_save, "Ctrl+Z": self.draft.undo_stack.undo,
+                "Ctrl+Shift+Z": self.draft.undo_stack.redo, "Ctrl+W": self.close}  # fmt: skip
+        keys |= {f"Alt+{i + 1}": lambda i=i: self.steps.setCurrentRow(i) for i in range(len(self.pages))}
+        for key, done in keys.items():
+            QShortcut(QKeySequence(key), self, activated=done)
+
+    # Reactions
+
+    def open_now(self) -> None:
+        """Show the window, in front."""
+        self.show()
+        self.raise_()
+        self.activateWindow()
+
+    def on_step(self, row: int) -> None:
+        """Show another page."""
+        self._stack.setCurrentIndex(row)
+        self.back_button.setEnabled(row > 0)
+        self.next_button.setEnabled(row < len(self.pages) - 1)
+
+    def step(self, by: int) -> None:
+        """Go back or forth."""
+        self.steps.setCurrentRow(min(max(self.steps.currentRow() + by, 0), len(self.pages) - 1))
+
+    def ask_load(self) -> None:
+        """Choose a plan to go on with."""
+        name, _ = QFileDialog.getOpenFileName(self, texts.LOAD_PLAN, last_folder(self._settings, _FOLDER),
+                                              texts.FILTER_PLAN)  # fmt: skip
+        if name:
+            remember_folder(self._settings, _FOLDER, Path(name))
+            self.message.hide()
+            self.draft.load(Path(name))
+
+    def ask_save(self) -> None:
+        """Choose where the plan is kept."""
+        if self.draft.plan is None:
+            self.message.say(texts.FILES_FIRST)
+            return
+        start = Path(last_folder(self._settings, _FOLDER)) / f"{self.draft.plan.name}.json"
+        name, _ = QFileDialog.getSaveFileName(self, texts.SAVE_PLAN, str(start), texts.FILTER_PLAN)
+        if name:
+            self.draft.save(Path(name) if Path(name).suffix else Path(f"{name}.json"))
+
+    def _show_states(self) -> None:
+        for row, page in enumerate(self.pages):
+            said = f"\n{page.state}" if page.state else ""
+            self.steps.item(row).setText(f"{row + 1}  {page.title}{said}")
+        self.save_button.setEnabled(self.draft.plan is not None)
+        self.over_button.setEnabled(self.draft.plan is not None)
+
+    def shut_down(self) -> None:
+        """Stop all jobs, for good; the main window closes."""
+        self.jobs.shut_down()
+        self.close()
+
+    # Qt
+
+    def sizeHint(self) -> QSize:
+        """Ask for room for tables and pictures, less than the screen has."""
+        room = self.screen().availableSize()
+        return QSize(min(_SIZE[0], room.width()), min(_SIZE[1], room.height()))
+
+
+def _rule() -> QFrame:
+    rule = QFrame()
+    rule.setProperty("role", "rule")
+    return rule

@@ -1,0 +1,82 @@
+"""All words of the import assistant. ``{names}`` are filled in."""
+
+from __future__ import annotations
+
+TITLE = "Import captures"
+ACTION = "&Import captures…"
+UNNAMED = "captures"
+LOAD_PLAN = "Load plan…"
+LOAD_PLAN_TIP = "Go on with an import that was saved (Ctrl+O)"
+SAVE_PLAN = "Save plan…"
+SAVE_PLAN_TIP = "Keep all decisions in a file, for another day or for efase import (Ctrl+S)"
+START_OVER = "Start over"
+START_OVER_TIP = "Forget the files and all decisions"
+BACK = "Back"
+BACK_TIP = "The step before (Alt+Left)"
+NEXT = "Next"
+NEXT_TIP = "The next step (Alt+Right)"
+STEPS_TIP = "Steps can be taken in any order (Alt+1 to Alt+7)"
+FILTER_PLAN = "Import plans (*.json);;All files (*)"
+PLAN_SAVED = "Saved {path}"
+PLAN_LOADED = "Loaded {path}"
+SURVEYING = "Looking through the files"
+READING = "Reading captures"
+READING_ONE = "Reading {name}"
+NO_MOTION = "The chosen files hold no motion."
+NO_MOTION_REMEDY = "Motion is read from C3D, TRC, CSV and TSV, from blendshape tracks and from tracked landmarks."
+FILES_FIRST = "Choose captures in the step “Files” first."
+
+# Edits, as Undo names them
+EDIT_FILES = "Add files"
+EDIT_LEAVE_OUT = "Leave sentences out"
+EDIT_EMOTION = "Set emotion"
+EDIT_WORDS = "Set words"
+EDIT_MATCH = "Match markers"
+EDIT_UNMATCH = "Unmatch a marker"
+EDIT_HEAD = "Choose head markers"
+EDIT_LIMITS = "Set limits of mending"
+EDIT_OFFSET = "Shift the motion"
+EDIT_ALIGNMENT = "Accept an alignment"
+EDIT_BUILD = "Set how the database is built"
+
+# Files
+FILES = "Files"
+FILES_HINT = "Drop motion files, sound and transcripts, or whole folders. Files that share a name become one sentence."
+FILES_EMPTY = (
+    "Drop files or folders here, or choose them below.\n\n"
+    "Motion: C3D, TRC, CSV, TSV, blendshape tracks, tracked landmarks, 25 to 240 Hz.\n"
+    "Sound: WAV, FLAC. Words: TextGrid, label files or plain text."
+)
+ADD_FILES = "Add files…"
+ADD_FILES_TIP = "Choose motion, sound and transcript files"
+ADD_FOLDER = "Add folder…"
+ADD_FOLDER_TIP = "Choose a folder; the folders in it are searched too"
+LEAVE_OUT = "Leave out"
+LEAVE_OUT_TIP = "Do not import the selected sentences (Delete); Ctrl+Z brings them back"
+EMOTION_OF_SELECTED = "Emotion of the selected:"
+EMOTION_TIP = "Select rows, then choose, or press 1 to 4"
+COLUMNS = ("Sentence", "Motion", "Sound", "Words", "Emotion", "Rate", "Frames", "Problems")
+COLUMN_TIPS = (
+    "Motion nodes will be called sentence:order",
+    "The file that the markers are read from",
+    "The sound that was recorded with it",
+    "A transcript with times, or the text; double-click or F2 to type what is said",
+    "Double-click or F2 to choose",
+    "Frames a second of the capture; the database has its own rate",
+    "Frames of the capture",
+    "What is missing or wrong",
+)
+NO_SOUND = "–"
+WORDS_FROM_FILE = "{file}"
+WORDS_RECOGNISED = "to be recognised"
+WORDS_NONE = "–"
+RATE = "{rate:g} Hz"
+PROBLEM_NO_SOUND = "no sound: it is imported as silence"
+PROBLEM_NO_WORDS = "no words: they will be recognised"
+PROBLEM_MISSING = "{n} samples missing ({share:.1%})"
+PROBLEM_SHORTER = "the sound lasts {sound:.1f} s, the motion {motion:.1f} s"
+FILES_FOUND = "{n} sentences · {minutes}"
+FILES_APART = "{n} sound files without motion"
+FILES_UNUSED = "{n} files not used"
+STATE_FILES = "{n} sentences"
+STATE_PROBLEMS = "{n} sentences, {bad} unreadable"
