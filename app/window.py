@@ -17,6 +17,7 @@ from app.icons import icon
 from app.menus import make_menus
 from app.panels.control import WIDTH_PX, ControlPanel
 from app.panels.export_dialog import ExportDialog
+from app.panels.importing.window import ImportWindow
 from app.panels.isomap import IsomapPane
 from app.panels.lexicon import LexiconDialog
 from app.panels.motion import MotionPane
@@ -55,6 +56,7 @@ class MainWindow(AskingWindow):
         self.actions = Actions(self)
         self.lexicon = LexiconDialog(authoring.jobs, self)
         self.export_dialog = ExportDialog(authoring, self.settings, self)
+        self.importing = ImportWindow(authoring, self)
         make_menus(self)
         self._join()
         self._restore_layout()
@@ -209,6 +211,7 @@ class MainWindow(AskingWindow):
         """Remember the layout and stop everything."""
         self._save_layout()
         self.keeper.close()
+        self.importing.shut_down()
         self.authoring.shut_down()
         for pane in (self.motion, self.preview):
             pane.face_view.release()
