@@ -29,7 +29,16 @@ def load_face(path: Path, marker_file: Path | None = None) -> Face:
     that the mesh has not.
     """
     path = Path(path)
-    mesh = read_mesh(path)
+    return face_of(read_mesh(path), path, marker_file)
+
+
+def face_of(
+    mesh: RawMesh, path: Path, marker_file: Path | None = None, shapes: Mapping[str, np.ndarray] | None = None
+) -> Face:
+    """Make a face of a mesh that was read from ``path``; see `load_face`.
+
+    shapes : displacements by name, shape (V, 3), in the unit of the file; they become the face's units
+    """
     landmarks: dict[str, int] = {}
     if marker_file is not None:
         placement = load_marker_file(marker_file)
@@ -41,13 +50,15 @@ def load_face(path: Path, marker_file: Path | None = None) -> Face:
                 f"but {path.name} has only {len(mesh.positions)} vertices."
             )
         landmarks = {landmark: at[name] for landmark, name in placement.landmarks.items()}
+    unit_mm = guess_unit_mm(mesh, landmarks)
     return Face(
         name=path.name,
-        positions=(mesh.positions * guess_unit_mm(mesh, landmarks)).astype(np.float32),
+        positions=(mesh.positions * unit_mm).astype(np.float32),
         triangles=mesh.triangles.astype(np.int32),
         part=guess_parts(mesh, landmarks),
         uv=mesh.uv,
         landmarks=landmarks,
+        units={name: (shape * unit_mm).astype(np.float32) for name, shape in (shapes or {}).items()},
         credit=str(path),
     )
 

@@ -47,7 +47,7 @@ def read_mesh(path: Path) -> RawMesh:
     except OSError as error:
         raise UserFacingError(f"{path} cannot be read: {error.strerror}.") from error
     mesh = _read_obj(path, text) if suffix == ".obj" else _read_by_trimesh(path)
-    _check(mesh, path)
+    check_mesh(mesh, path)
     return mesh
 
 
@@ -142,7 +142,8 @@ def _read_by_trimesh(path: Path) -> RawMesh:
     )
 
 
-def _check(mesh: RawMesh, path: Path) -> None:
+def check_mesh(mesh: RawMesh, path: Path) -> None:
+    """Raise `UserFacingError` unless ``mesh``, read from ``path``, is sound: finite points, triangles that exist."""
     count = len(mesh.positions)
     if count == 0 or len(mesh.triangles) == 0:
         raise UserFacingError(f"{path} holds no triangles.")
