@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+
+from core.errors import UserFacingError
 
 _SIDES = ("Left", "Right")
 _EYE = ("eyeBlink", "eyeLookDown", "eyeLookIn", "eyeLookOut", "eyeLookUp", "eyeSquint", "eyeWide")
@@ -23,6 +26,47 @@ HEAD_AND_EYES: tuple[str, ...] = (
     "headYaw", "headPitch", "headRoll", "leftEyeYaw", "leftEyePitch", "leftEyeRoll", "rightEyeYaw", "rightEyePitch",
     "rightEyeRoll",
 )  # fmt: skip
+# beyond this a column is no weight, not even one that was pushed
+_LARGEST_WEIGHT = 2.0
+_PERCENT = 100.0
+_LEFT_RIGHT = (("_left", "left"), ("_right", "right"), ("_l", "left"), ("_r", "right"))
+
+
+def _plain(name: str) -> str:
+    lower = name.strip().lower()
+    for ending, side in _LEFT_RIGHT:
+        if lower.endswith(ending):
+            lower = lower.removesuffix(ending) + side
+            break
+    return lower.replace("_", "").replace(" ", "")
+
+
+_BY_PLAIN = {_plain(name): name for name in (*ARKIT_UNITS, *HEAD_AND_EYES)}
+
+
+def arkit_name(name: str) -> str | None:
+    """Return ARKit's own spelling of a unit (``EyeBlinkLeft``, ``eyeBlink_L``, ``eye_blink_left``), or None."""
+    return _BY_PLAIN.get(_plain(name))
+
+
+def checked_weights(weights: np.ndarray, path: Path) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Return weights as float32 in 0..1, and what is to be said of them; a frame that lacks one is NaN.
+
+    Weights between 0 and 100, and beyond 2, are taken as per cent. Raises `UserFacingError` for what is no weight.
+    """
+    weights = np.array(weights, float)
+    weights[np.isnan(weights).any(axis=1)] = np.nan
+    seen = weights[np.isfinite(weights[:, :1].ravel())]
+    low, high = (float(seen.min()), float(seen.max())) if seen.size else (0.0, 0.0)
+    notes: tuple[str, ...] = ()
+    if high > _LARGEST_WEIGHT and low >= -1.0 and high <= _PERCENT:
+        weights /= _PERCENT
+        low, high, notes = low / _PERCENT, high / _PERCENT, ("Weights are taken as per cent.",)
+    if low < -_LARGEST_WEIGHT or high > _LARGEST_WEIGHT:
+        raise UserFacingError(f"'{path}' holds weights from {low:.3g} to {high:.3g}; they should lie between 0 and 1.")
+    if low < 0.0 or high > 1.0:
+        notes += (f"Weights from {low:.3g} to {high:.3g} were limited to 0 and 1.",)
+    return np.clip(weights, 0.0, 1.0).astype(np.float32), notes
 
 
 @dataclass(frozen=True)

@@ -51,12 +51,12 @@ def test_grid_clips_become_a_stabilised_database(small_grid, tmp_path):
 @pytest.mark.parametrize(
     ("damage", "words"),
     [
-        (lambda f: (f / "tracks.npz").write_bytes(b""), "not a readable track file"),
-        (lambda f: (f / "tracks.npz").write_bytes((f / "tracks.npz").read_bytes()[:5000]), "not a readable track file"),
+        (lambda f: (f / "tracks.npz").write_bytes(b""), "no readable archive"),
+        (lambda f: (f / "tracks.npz").write_bytes((f / "tracks.npz").read_bytes()[:5000]), "no readable archive"),
         (lambda f: np.savez(f / "tracks.npz", xyz64=np.zeros((3, 2, 3), np.int16)), "has no array 'start'"),
         (lambda f: alter(f, start=np.array([0, 5, 4, 9, 10])), "do not fit"),
         (lambda f: alter(f, fps=np.array(-1.0)), "frames a second"),
-        (lambda f: alter(f, clips=np.array([None] * 4, object)), "not a readable track file"),
+        (lambda f: alter(f, clips=np.array([None] * 4, object)), "no readable archive"),
         (lambda f: shutil.rmtree(f / "audio"), ".flac"),
         (lambda f: shutil.rmtree(f / "textgrid"), ".TextGrid"),
     ],
