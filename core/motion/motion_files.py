@@ -10,6 +10,7 @@ from core.errors import UserFacingError
 from core.motion.c3d import read_c3d, write_c3d
 from core.motion.marker_csv import write_markers_csv
 from core.motion.motion_track import MotionTrack, ReadOptions
+from core.motion.readers.blendshape_files import is_blendshape_table
 from core.motion.readers.delimited import read_delimited
 from core.motion.readers.landmark_arrays import read_landmark_arrays
 from core.motion.readers.marker_text import read_marker_text
@@ -40,7 +41,10 @@ def read_takes(path: str | Path, options: ReadOptions | None = None) -> tuple[Mo
         return (read_trc(path, options),)
     if suffix == ".npz":
         return read_landmark_arrays(path, options)
-    return (read_marker_text(read_delimited(path), options),)
+    text = read_delimited(path)
+    if is_blendshape_table(text):
+        raise UserFacingError(f"'{path}' holds weights of blendshapes, not markers.", "Import it as blendshapes.")
+    return (read_marker_text(text, options),)
 
 
 def read_motion(path: str | Path, options: ReadOptions | None = None) -> tuple[np.ndarray, tuple[str, ...], float]:

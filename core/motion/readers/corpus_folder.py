@@ -21,7 +21,7 @@ from core.speech.text_file import read_text
 from core.speech.transcript_files import read_transcript
 
 _SUFFIXES = {
-    "motion": (".c3d", ".csv", ".tsv"),
+    "motion": (".c3d", ".trc", ".csv", ".tsv"),
     "audio": (".wav", ".flac", ".ogg"),
     "transcript": (".TextGrid", ".textgrid", ".lab", ".txt"),
 }
