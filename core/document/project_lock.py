@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import IO
 
 from core.errors import UserFacingError
+from core.file_lock import lock_file
 from core.folders import data_dir
 
 
@@ -37,7 +38,7 @@ class ProjectLock:
                 "Let EFASE_DATA_DIR name a folder that can be.",
             ) from error
         try:
-            _lock(self._file)
+            lock_file(self._file)
         except OSError as error:
             self._file.close()
             raise ProjectLocked(path) from error
@@ -47,15 +48,3 @@ class ProjectLock:
         if self._file is not None:
             self._file.close()
             self._file = None
-
-
-def _lock(file: IO) -> None:
-    if os.name == "nt":
-        import msvcrt
-
-        file.seek(0)
-        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-    else:
-        import fcntl
-
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -73,11 +73,13 @@ def build_database(
         **corpus.report,
         "captured_rate_hz": seen.recordings[0].rate_hz,
         "longest_gap_s": settings.longest_gap_s,
-        **what_was_done(prepared, left_out),
+        "pca_dims": settings.n_dims,
+        "marker_samples_filled": sum(p.n_filled for p in prepared),
+        "frames_masked": int(sum(p.masked.sum() for p in prepared)),
+        "phones_left_out": left_out,
     }
-    captures = kept_captures(prepared) if settings.keep_captures else ()
-    if not settings.keep_captures:
-        prepared = []  # the faces are the largest thing here, and the maps want room
+    captures = {p.recording.sentence: KeptCapture(p.face, p.masked) for p in prepared if settings.keep_captures}
+    prepared.clear()  # the faces are the largest thing here, and the maps want room
     database = MotionDatabase(
         name=corpus.name, synthetic=corpus.synthetic, rate_hz=settings.rate_hz, markers=markers, pca=pca,
         frames=part.frames, head_rotation=part.head_rotation, head_translation=part.head_translation,
@@ -88,7 +90,7 @@ def build_database(
         report=report,
     )  # fmt: skip
     progress.step(0.95, "writing the database")
-    return _store(database, path, sounds(corpus.recordings), held_out, captures)
+    return _store(database, path, sounds(corpus.recordings), held_out, captures.items())
 
 
 def prepare_all(
@@ -102,20 +104,6 @@ def prepare_all(
     return prepared
 
 
-def what_was_done(prepared: Sequence[PreparedSentence], left_out: int) -> dict[str, int]:
-    """Return the counts of the database's report."""
-    return {
-        "marker_samples_filled": sum(p.n_filled for p in prepared),
-        "frames_masked": int(sum(p.masked.sum() for p in prepared)),
-        "phones_left_out": left_out,
-    }
-
-
-def kept_captures(prepared: Iterable[PreparedSentence]) -> Iterable[tuple[str, KeptCapture]]:
-    """Return what is stored of each sentence with `BuildSettings.keep_captures`."""
-    return ((p.recording.sentence, KeptCapture(p.face, p.masked)) for p in prepared)
-
-
 def sounds(recordings: Iterable[Recording]) -> Iterable[tuple[str, bytes]]:
     """Yield name and FLAC file of each sentence that has sound."""
     from core.media.audio import encode_flac, load_audio
@@ -125,8 +113,11 @@ def sounds(recordings: Iterable[Recording]) -> Iterable[tuple[str, bytes]]:
             yield recording.sentence, encode_flac(load_audio(recording.audio))
 
 
-def check_corpus(corpus: Corpus) -> None:
-    """Check names, markers and what is held out; raises `UserFacingError`."""
+def check_corpus(corpus: Corpus, some_seen: bool = True) -> None:
+    """Check names, markers and what is held out; raises `UserFacingError`.
+
+    some_seen : not all sentences may be held out
+    """
     if not corpus.recordings:
         raise UserFacingError(f"The corpus '{corpus.name}' has no sentence.")
     names = [r.sentence for r in corpus.recordings]
@@ -144,7 +135,7 @@ def check_corpus(corpus: Corpus) -> None:
     strangers = [name for held in corpus.held_out.values() for name in held if name not in names]
     if strangers:
         raise UserFacingError(f"The corpus '{corpus.name}' has no sentence '{strangers[0]}' to hold out.")
-    if len({name for held in corpus.held_out.values() for name in held}) == len(names):
+    if some_seen and len({name for held in corpus.held_out.values() for name in held}) == len(names):
         raise UserFacingError(f"All sentences of the corpus '{corpus.name}' are held out, so nothing is left to build.")
     missing = [name for name in corpus.kept_markers if name not in first.marker_names]
     if missing:

@@ -125,7 +125,7 @@ class MotionDatabase:
                 f"The database '{self.name}' holds out no sentences for '{split}'.",
                 "Build it with `efase build --hold-out`, or name a corpus folder with --corpus.",
             )
-        with self.open_file() as file:
+        with self.open_file() as file, damage_told(self.path):
             return read_held_out(file, names, self.markers)
 
     def audio_bytes(self, sentence: str) -> bytes | None:
@@ -139,9 +139,12 @@ class MotionDatabase:
                 return None
             return stored(file, f"audio/{sentence}", np.uint8).tobytes()
 
-    def open_file(self) -> contextlib.AbstractContextManager:
-        """Open the stored file to read what does not come with `open_database`; damage is told as it is there."""
-        return _opened(self.path)
+    def open_file(self):
+        """Open the stored HDF5 file, to read what does not come with `open_database`, within `damage_told`."""
+        import h5py
+
+        with damage_told(self.path):
+            return h5py.File(self.path, "r")
 
     def summary(self) -> dict[str, object]:
         """Return what `efase info` prints: counts, coverage, rate, content hash."""
@@ -178,24 +181,18 @@ def open_database(path: Path) -> MotionDatabase:
 
     Raises `UserFacingError` when it is missing, not an eFASE database, from a newer major version, or damaged.
     """
+    import h5py
+
     path = Path(path)
     if not path.is_file():
         raise UserFacingError(f"There is no motion database at '{path}'.", "Build one with `efase build`.")
-    with _opened(path) as file:
+    with damage_told(path), h5py.File(path, "r") as file:
         _check_version(file, path)
         return _read(file, path)
 
 
 @contextlib.contextmanager
-def _opened(path: Path) -> Iterator:
-    import h5py
-
-    with _damage_told(path), h5py.File(path, "r") as file:
-        yield file
-
-
-@contextlib.contextmanager
-def _damage_told(path: Path) -> Iterator[None]:
+def damage_told(path: Path) -> Iterator[None]:
     """Turn whatever a file that is no sound database makes us raise into one sentence."""
     try:
         yield
