@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import functools
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
+from core.animeme.controls import ControlTrack
 from core.errors import UserFacingError
 from core.face.eyelids import Eyelids
 from core.face.face import Face
 from core.face.lip_contact import LipContact
-from core.face.pose import Eyeballs, Head, TongueShape
+from core.face.moving_parts import MovingParts
 from core.face.skinning import MarkerSkin
 from core.motion.marker_set import MarkerSet
 from core.progress import SILENT, Progress
+from core.rig.rig import Rig, fitted
 from core.synthesis.marker_motion import MarkerMotion
 from core.synthesis.pose_tracks import PoseTracks
 
@@ -64,16 +67,8 @@ class FaceRig:
         return cls(shown, vertices, skin, Eyelids.of(shown, vertices, markers), LipContact.of(shown))
 
     @cached_property
-    def _head(self) -> Head:
-        return Head.of(self.face)
-
-    @cached_property
-    def _eyeballs(self) -> Eyeballs:
-        return Eyeballs.of(self.face)
-
-    @cached_property
-    def _tongue(self) -> TongueShape | None:
-        return TongueShape.of(self.face)
+    def _parts(self) -> MovingParts:
+        return MovingParts(self.face)
 
     def deform(self, displacements: np.ndarray) -> np.ndarray:
         """Return the vertices for marker displacements alone; see `pose`."""
@@ -89,23 +84,47 @@ class FaceRig:
         """Return the vertices of one frame, mm, float32, shape (n_vertices, 3).
 
         displacements : shape (n_markers, 3), mm, of the markers from rest
-        head : rotation vector (radians) and translation (mm); eyes and teeth go with the head, the base of the neck
-            stays. None keeps it still
-        gaze : yaw to the character's left and pitch up, degrees; the eyeballs turn about their centres
-        tongue : tip, back and advance, as `core.face.tongue.tongue_track` gives them; None lets the jaw carry it
+        head, gaze, tongue : see `core.face.moving_parts.MovingParts.place`
         """
         moved = self.skin.deform(displacements)
         self.eyelids.apply(moved, 0.0 if gaze is None else float(gaze[1]))
         if self.lips is not None:
             self.lips.apply(moved)
-        if tongue is not None and self._tongue is not None:
-            self._tongue.bend(moved, self.face.positions, *map(float, tongue))
-        positions = self.face.positions + moved
-        if gaze is not None:
-            self._eyeballs.turn(positions, float(gaze[0]), float(gaze[1]))
-        if head is not None:
-            positions = self._head.move(positions, *head)
-        return positions
+        return self._parts.place(moved, head, gaze, tongue)
+
+
+@dataclass(frozen=True)
+class ControlledFace:
+    """A face that controls move, by its own shapes; lips : what keeps them from sliding through each other."""
+
+    rig: Rig
+    lips: LipContact | None
+
+    @classmethod
+    def of(cls, rig: Rig) -> ControlledFace:
+        """Prepare ``rig`` for pictures."""
+        return cls(rig, LipContact.of(rig.face))
+
+    @cached_property
+    def _parts(self) -> MovingParts:
+        return MovingParts(self.rig.face)
+
+    def poses(
+        self, track: ControlTrack, tracks: PoseTracks | None = None, span: tuple[int, int] | None = None
+    ) -> Iterator[np.ndarray]:
+        """Yield the vertices frame by frame, mm, float32, shape (n_vertices, 3).
+
+        track : in any controls, matched by name (see `core.rig.rig.fitted`)
+        tracks, span : as for `frames`
+        """
+        tracks = tracks or PoseTracks()
+        values = fitted(self.rig, track)[0].values
+        first, stop = span or (0, len(values))
+        for f in range(first, stop):
+            moved = self.rig.moved(values[f])
+            if self.lips is not None:
+                self.lips.apply(moved)
+            yield self._parts.place(moved, **tracks.at(f))
 
 
 def frames(
@@ -129,33 +148,96 @@ def frames(
     span : first frame and the one after the last; None: all
     Raises `UserFacingError` on a machine without GL.
     """
+    first, stop = span or (0, len(motion.positions))
+    if style == "markers":
+        yield from _marker_pictures(motion, width, height, progress, background, first, stop)
+        return
+    if rig is None:
+        raise UserFacingError("There is no face to draw.", "Draw the markers, with --style markers.")
+    tracks = tracks or PoseTracks()
+    displacements = motion.displacements
+    poses = (rig.pose(displacements[f], **tracks.at(f)) for f in range(first, stop))
+    yield from face_pictures([rig.face], zip(poses), stop - first, style, width, height, progress, texture, background)
+
+
+def face_pictures(
+    faces: Sequence[Face], poses: Iterable[Sequence[np.ndarray]], n_frames: int, style: str, width: int, height: int,
+    progress: Progress = SILENT, texture: np.ndarray | None = None,
+    background: tuple[float, float, float] | None = None,
+) -> Iterator[np.ndarray]:  # fmt: skip
+    """Yield one picture for each of ``poses``: the vertices of every one of ``faces`` at that moment, mm.
+
+    Several faces share the picture, row by row, and stand as large in it as they can; what is left over of its width
+    and height is background. See `frames` for the rest.
+    """
     from gpu.gl.camera import Camera, portrait_bounds
     from gpu.gl.face import FaceRenderer, Style
     from gpu.gl.offscreen import OffscreenRenderer
 
-    if rig is None and style != "markers":
-        raise UserFacingError("There is no face to draw.", "Draw the markers, with --style markers.")
-    styles = (Style.TEXTURED, Style.SHADED, Style.WIREFRAME, Style.MARKERS)
-    shown = dict(zip(STYLES, styles))[style]
-    tracks = tracks or PoseTracks()
+    shown = dict(zip(STYLES, (Style.TEXTURED, Style.SHADED, Style.WIREFRAME)))[style]
+    columns = n_columns(len(faces), width, height)
+    rows = -(-len(faces) // columns)
+    cameras = [Camera.front(portrait_bounds(face)) for face in faces]
+    with OffscreenRenderer(width // columns, height // rows) as offscreen:
+        renderers = [FaceRenderer(offscreen.ctx) for _ in faces]
+        try:
+            for renderer, face in zip(renderers, faces):
+                renderer.set_face(face)
+                renderer.set_texture(texture)
+            for f, at_once in enumerate(poses):
+                progress.step(f / n_frames, "drawing")
+                cells = []
+                for renderer, camera, positions in zip(renderers, cameras, at_once):
+                    renderer.set_positions(positions)
+                    draw = functools.partial(_draw, renderer, camera, shown, background)
+                    cells.append(offscreen.frame(draw))
+                yield cells[0] if len(faces) == 1 else _tiled(cells, columns, width, height)
+        finally:
+            for renderer in renderers:
+                renderer.release()
+
+
+def n_columns(n_faces: int, width: int, height: int) -> int:
+    """Return in how many columns faces stand largest; a portrait is four wide and five high."""
+
+    def size(columns: int) -> float:
+        return min(width / columns / 4, height / -(-n_faces // columns) / 5)
+
+    return max(range(1, n_faces + 1), key=size)
+
+
+def _draw(renderer, camera, shown, background, target) -> None:
+    renderer.draw(target, camera, shown, background=background)
+
+
+def _tiled(cells: list[np.ndarray], columns: int, width: int, height: int) -> np.ndarray:
+    """Cells row by row; the last row stands in the middle."""
+    high, wide = cells[0].shape[:2]
+    picture = np.empty((height, width, 3), np.uint8)
+    picture[:] = cells[0][0, 0]
+    for first in range(0, len(cells), columns):
+        row = cells[first : first + columns]
+        top, left = first // columns * high, (width - len(row) * wide) // 2
+        picture[top : top + high, left : left + len(row) * wide] = np.concatenate(row, axis=1)
+    return picture
+
+
+def _marker_pictures(
+    motion: MarkerMotion, width: int, height: int, progress: Progress,
+    background: tuple[float, float, float] | None, first: int, stop: int,
+) -> Iterator[np.ndarray]:  # fmt: skip
+    from gpu.gl.camera import Camera
+    from gpu.gl.face import FaceRenderer, Style
+    from gpu.gl.offscreen import OffscreenRenderer
+
+    rest = motion.markers.rest
+    camera = Camera.front(np.stack([rest.min(axis=0), rest.max(axis=0)]))
     with OffscreenRenderer(width, height) as offscreen:
         renderer = FaceRenderer(offscreen.ctx)
         try:
-            if rig is not None and style != "markers":
-                renderer.set_face(rig.face)
-                renderer.set_texture(texture)
-                camera = Camera.front(portrait_bounds(rig.face))
-            else:
-                rest = motion.markers.rest
-                camera = Camera.front(np.stack([rest.min(axis=0), rest.max(axis=0)]))
-            first, stop = span or (0, len(motion.positions))
-            displacements = motion.displacements
             for f in range(first, stop):
                 progress.step((f - first) / (stop - first), "drawing")
-                if rig is not None and style != "markers":
-                    renderer.set_positions(rig.pose(displacements[f], **tracks.at(f)))
-                else:
-                    renderer.set_markers(motion.positions[f])
-                yield offscreen.frame(lambda target: renderer.draw(target, camera, shown, background=background))
+                renderer.set_markers(motion.positions[f])
+                yield offscreen.frame(functools.partial(_draw, renderer, camera, Style.MARKERS, background))
         finally:
             renderer.release()
