@@ -1,0 +1,55 @@
+"""Key lip shapes: a few captured frames that the others are blended from (Kuo et al. 2012, section 4)."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+
+from core.errors import UserFacingError
+
+_MOST_FRAMES = 600
+_TRIALS = 12
+
+
+def key_lip_shapes(lip_displacements: np.ndarray, n_shapes: int = 7, seed: int = 2008) -> np.ndarray:
+    """Choose about ``n_shapes`` frames by affinity propagation (Frey and Dueck 2007).
+
+    Affinity propagation finds the number of clusters from a preference; the preference is bisected until the number is
+    ``n_shapes``, or as near as it comes. Frames at rest say nothing about how lips move, and are left out.
+
+    lip_displacements : shape (F, K, 3), mm from rest
+    returns : the frames of the exemplars, int, ascending
+    Raises `UserFacingError` when fewer than two different frames move.
+    """
+    packed = np.reshape(lip_displacements, (len(lip_displacements), -1)).astype(float)
+    away = np.linalg.norm(packed, axis=1)
+    moving = np.flatnonzero(away > 0.2 * away.max(initial=0.0))
+    rng = np.random.default_rng(seed)
+    chosen = np.sort(rng.choice(moving, min(_MOST_FRAMES, len(moving)), replace=False))
+    if len(np.unique(packed[chosen], axis=0)) < max(2, n_shapes):
+        raise UserFacingError(f"The captured lips do not move enough to find {n_shapes} key shapes in them.")
+    similar = -np.square(packed[chosen, None] - packed[None, chosen]).sum(axis=2)
+    low, high = 200.0 * similar.min(), 0.0
+    best: np.ndarray | None = None
+    for _ in range(_TRIALS):
+        middle = (low + high) / 2 if high else low / 8
+        exemplars = _exemplars(similar, middle, seed)
+        if best is None or abs(len(exemplars) - n_shapes) < abs(len(best) - n_shapes):
+            best = exemplars
+        if len(exemplars) == n_shapes:
+            break
+        low, high = (middle, high) if len(exemplars) < n_shapes else (low, middle)
+    return chosen[np.sort(best)]
+
+
+def _exemplars(similar: np.ndarray, preference: float, seed: int) -> np.ndarray:
+    from sklearn.cluster import AffinityPropagation
+    from sklearn.exceptions import ConvergenceWarning
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ConvergenceWarning)  # without exemplars it counts as none found
+        found = AffinityPropagation(
+            damping=0.8, max_iter=300, affinity="precomputed", preference=preference, random_state=seed
+        ).fit(similar)
+    return np.asarray(found.cluster_centers_indices_, int)
