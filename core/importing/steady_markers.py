@@ -96,11 +96,18 @@ def rigid_residual_mm(positions: np.ndarray, rigid: Sequence[int]) -> np.ndarray
 
     positions : shape (n_frames, n_markers, 3), mm, NaN where missing; rigid : rows of the near-rigid markers, 3 or more
     """
+    return np.sqrt(np.nanmean(rigid_away_mm(positions, rigid) ** 2, axis=0))
+
+
+def rigid_away_mm(positions: np.ndarray, rigid: Sequence[int]) -> np.ndarray:
+    """Return how far each rigid marker is off its mean place, frame by frame: mm, shape (n_frames, n_rigid).
+
+    As in `rigid_residual_mm`; NaN where a marker is missing.
+    """
     points = np.asarray(positions, float)[:, list(rigid)]
     reference = typical_pose(points)
     for _ in range(3):
         face, _ = normalise(points, reference)
         with np.errstate(invalid="ignore"):
             reference = np.nanmean(face, axis=0)
-    away = np.linalg.norm(face - reference, axis=2)
-    return np.sqrt(np.nanmean(away**2, axis=0))
+    return np.linalg.norm(face - reference, axis=2)
