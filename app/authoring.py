@@ -30,7 +30,9 @@ from core.document.parts import DEFAULT_FACE, AlignedSpeech, FaceChoice
 from core.errors import UserFacingError
 from core.search.engine import SearchAnswer
 from core.speech.emotion import EmotionModifier
+from core.synthesis.engine import EngineAnswer
 from core.synthesis.pose_tracks import PoseTracks
+from core.synthesis.registry import engine_kind
 
 
 class Authoring(Editing):
@@ -190,9 +192,12 @@ class Authoring(Editing):
             self.film.set_head_moves(output.head_moves)
             self.tracks_changed.emit()
 
-    def _on_solved(self, answer: SearchAnswer) -> None:
+    def _on_solved(self, answer: EngineAnswer) -> None:
         after = self.undo_stack.undoText() or texts.SYNTHESISE
-        solved = texts.SOLVED.format(milliseconds=1000 * answer.search_s, after=after)
+        if isinstance(answer, SearchAnswer):
+            solved = texts.SOLVED.format(milliseconds=1000 * answer.search_s, after=after)
+        else:
+            solved = texts.ANIMATED.format(engine=engine_kind(self.document.engine).title, after=after)
         self.noted.emit(" · ".join((solved, *answer.warnings)))
         if self.view.slot is None:
             self.select_a_vowel()

@@ -19,6 +19,7 @@ from core.document.edits import (
     LockSlots,
     PinMotionNode,
     SetEmotion,
+    SetEngine,
     SetOutput,
     SetPolish,
     SetReferenceVideo,
@@ -104,6 +105,9 @@ class Editing(Looking):
     def toggle_pin(self, node: str) -> None:
         """Tie ``node`` to the selected slot, or free the slot if it is tied to just that node."""
         slot = self.view.map_slot
+        if self.document.has_no_path:
+            self.failed.emit(texts.PIN_NEEDS_SEARCH, texts.CHOOSE_A_SEARCH)
+            return
         if slot is None:
             self.noted.emit(texts.SELECT_TO_PIN.format(phone=self.view.map_phone))
             return
@@ -152,7 +156,12 @@ class Editing(Looking):
         if nodes:
             self.push(RestoreMotionNodes.on(self.document, nodes, only_here or self.removes_only_here))
 
-    # Search
+    # Engine and search
+
+    def set_engine(self, name: str) -> None:
+        """Let another engine make the motion, one of `core.synthesis.registry.ENGINES`."""
+        if name != self.document.engine:
+            self.attempt(lambda: SetEngine.on(self.document, name))
 
     def set_weights(self, weights: SearchWeights | None, label: str, gesture: int | None = None) -> None:
         """Search under other weights; None are the database's own."""

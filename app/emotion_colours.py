@@ -19,7 +19,7 @@ _OKABE_ITO = {
 class EmotionColours(QObject):
     """Which colours are chosen; remembered by the window's settings.
 
-    changed() : whoever paints emotions paints anew
+    changed() : whoever keeps colours, of the emotions or of the theme, paints anew
     """
 
     changed = Signal()

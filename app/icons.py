@@ -7,10 +7,12 @@ from pathlib import Path
 
 from PySide6.QtCore import QByteArray, Qt
 from PySide6.QtGui import QIcon, QImage, QPainter, QPixmap
+from PySide6.QtWidgets import QAbstractButton, QWidget
 
 from app.theme import colour, theme
 
 ICONS = Path(__file__).resolve().parents[1] / "resources" / "icons"
+_NAME = "icon_name"
 _SIZES_PX = (16, 24, 32, 48)
 
 
@@ -27,6 +29,19 @@ def icon(name: str, css: str | None = None) -> QIcon:
         for size in _SIZES_PX:
             made.addPixmap(_pixmap(name, shown, size), mode)
     return made
+
+
+def put_icon(button: QAbstractButton, name: str) -> None:
+    """Give a button the icon ``name``; `renew_icons` draws it anew in another theme."""
+    button.setProperty(_NAME, name)
+    button.setIcon(icon(name))
+
+
+def renew_icons(window: QWidget) -> None:
+    """Draw the icons of all buttons in ``window`` in the theme in use."""
+    for button in window.findChildren(QAbstractButton):
+        if button.property(_NAME):
+            button.setIcon(icon(button.property(_NAME)))
 
 
 def _pixmap(name: str, css: str, size_px: int) -> QPixmap:

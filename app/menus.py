@@ -81,6 +81,7 @@ def _motion(window: MainWindow) -> None:
         authoring.document.output.frame_rate,
         authoring.set_frame_rate,
     )
+    add(motion, "start_frame", texts.ACTION_START_FRAME, "", window.ask_start_frame)
 
 
 def _map(window: MainWindow) -> None:

@@ -17,6 +17,7 @@ from core.errors import UserFacingError
 from core.media.video import FRAME_RATES
 from core.progress import SILENT, Progress
 from core.synthesis.polish import polished
+from core.synthesis.registry import make_engine
 
 
 @dataclass(frozen=True)
@@ -55,8 +56,9 @@ def run(job: ExportJob, progress: Progress = SILENT) -> dict[str, object]:
     document = Document()
     document.load(content.state(audio, None))
     document.take_database(opened.database, opened.removals)
-    opened.engine.reweight(content.weights or opened.database.weights)
-    answer = opened.engine.synthesise(document.speech_input(), progress.part(0.2, 0.5))
+    engine = make_engine(content.engine, opened.database, opened.engine.kernels, content.weights)
+    answer = engine.synthesise(document.speech_input(), progress.part(0.2, 0.5))
+    path, search_s = getattr(answer, "path", None), getattr(answer, "search_s", 0.0)
     motion = polished(answer.motion, content.polish)
 
     began = time.perf_counter()
@@ -69,8 +71,9 @@ def run(job: ExportJob, progress: Progress = SILENT) -> dict[str, object]:
     face, stage = document.face or DEFAULT_FACE, progress.part(0.5, 1.0)
     warnings += write_outputs(job.outputs, motion, audio, content.transcript, video, face, stage)
     return {
-        "phonemes": phoneme_rows(content.transcript, answer, opened.database.nodes),
-        "cost": answer.path.cost, "optimal": answer.path.is_optimal, "text": content.text,
-        "seconds": {"search": rounded_seconds(answer.search_s), "render": rounded_seconds(time.perf_counter() - began)},
+        "phonemes": phoneme_rows(content.transcript, path, opened.database.nodes),
+        "cost": None if path is None else path.cost, "optimal": None if path is None else path.is_optimal,
+        "engine": content.engine, "text": content.text,
+        "seconds": {"search": rounded_seconds(search_s), "render": rounded_seconds(time.perf_counter() - began)},
         "warnings": warnings, "outputs": [str(path) for path in job.outputs],
     }  # fmt: skip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 from PySide6.QtCore import QObject, Signal
@@ -12,23 +12,26 @@ from app import texts
 from app.jobs import JobRunner
 from core.document.change import ASKED_OF_THE_SEARCH, Change
 from core.document.document import Document
-from core.document.live_search import LiveSearch, PricedPath
+from core.document.live_engine import LiveEngine
+from core.document.live_search import PricedPath
 from core.media.audio import Audio
+from core.motion.database import MotionDatabase
 from core.progress import Progress
 from core.search.best_path import MotionPath
-from core.search.engine import SearchAnswer, SearchEngine
+from core.search.engine import SearchEngine
 from core.search.weights import SearchWeights
 from core.speech.loudness import levels_db
-from core.synthesis.engine import SpeechInput
+from core.synthesis.engine import EngineAnswer, MotionEngine, SpeechInput
 from core.synthesis.marker_motion import MarkerMotion
 from core.synthesis.polish import Polish, polished
 from core.synthesis.pose_tracks import PoseTracks
+from core.synthesis.registry import DEFAULT_ENGINE, make_engine
 
 
 class Solving(QObject):
-    """Searches in the background, for as long as the sound on show is the one that `follow` was asked for.
+    """Animates in the background, for as long as the sound on show is the one that `follow` was asked for.
 
-    solved(SearchAnswer) : the document shows another motion
+    solved(EngineAnswer) : the document shows another motion
     """
 
     solved = Signal(object)
@@ -36,16 +39,24 @@ class Solving(QObject):
     def __init__(self, document: Document, jobs: JobRunner, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._document, self._jobs = document, jobs
-        # by content of the database, so that undo need not price its transitions again
-        self._searches: dict[str, LiveSearch] = {}
+        # by content of the database and name, so that undo need not price transitions again
+        self._engines: dict[tuple[str, str], LiveEngine] = {}
         self._followed: Audio | None = None
         self._tracks = PoseTracks()
         self.changed_slots: tuple[int, ...] = ()
         document.changed.connect(self._on_document_changed)
 
     def add_engine(self, engine: SearchEngine) -> None:
-        """Take the engine of a database that was opened."""
-        self._searches.setdefault(engine.database.content_hash, LiveSearch(engine))
+        """Take the search of a database that was opened; other engines for it are made when they are asked for."""
+        self._engines.setdefault((engine.database.content_hash, DEFAULT_ENGINE), LiveEngine(lambda: engine))
+
+    def _engine(self) -> LiveEngine:
+        """The engine that the document asks for now."""
+        document = self._document
+        key = document.database.content_hash, document.engine
+        if key not in self._engines:
+            self._engines[key] = LiveEngine(partial(_made_engine, document.engine, document.database))
+        return self._engines[key]
 
     def follow(self) -> None:
         """Find motion for the speech on show, and anew after each edit; see `follow_later`."""
@@ -80,23 +91,22 @@ class Solving(QObject):
         if speech is None or database is None:
             return
         self._jobs.cancel("prices")
-        search = self._searches[database.content_hash]
-        request = _SolveRequest(search, speech, document.weights, document.speech.audio, document.polish)
+        weights, audio = document.search_weights, document.speech.audio
+        request = _SolveRequest(self._engine(), speech, weights, audio, document.polish)
         self._jobs.start("search", texts.SYNTHESISING, request, _solve, self._on_solved)
 
-    def _on_solved(self, solved: tuple[SearchAnswer, MarkerMotion, PoseTracks]) -> None:
+    def _on_solved(self, solved: tuple[EngineAnswer, MarkerMotion, PoseTracks]) -> None:
         answer, motion, self._tracks = solved
         self._jobs.cancel("polish")
-        before = self._document.answer
-        self.changed_slots = () if before is None else changed_slots(before.path, answer.path)
-        self._document.show_answer(answer, motion)
+        document, before, path = self._document, self._document.path, getattr(answer, "path", None)
+        self.changed_slots = () if before is None or path is None else changed_slots(before, path)
+        document.show_answer(answer, motion)
         self.solved.emit(answer)
-        search = self._searches[self._document.database.content_hash]
-        self._jobs.start("prices", "", search, _price, self._on_priced)
+        if path is not None:
+            self._jobs.start("prices", "", self._engine(), _price, self._on_priced)
 
     def _on_priced(self, priced: PricedPath | None) -> None:
-        answer = self._document.answer
-        if priced is not None and answer is not None and priced.path is answer.path:
+        if priced is not None and priced.path is self._document.path:
             self._document.show_prices(priced.prices, priced.breakdown)
 
 
@@ -109,15 +119,15 @@ def changed_slots(before: MotionPath, after: MotionPath) -> tuple[int, ...]:
 
 @dataclass(frozen=True)
 class _SolveRequest:
-    search: LiveSearch
+    engine: LiveEngine
     speech: SpeechInput
     weights: SearchWeights | None
     audio: Audio
     polish: Polish
 
 
-def _solve(request: _SolveRequest, progress: Progress) -> tuple[SearchAnswer, MarkerMotion, PoseTracks]:
-    answer = request.search.answer(request.speech, request.weights, progress)
+def _solve(request: _SolveRequest, progress: Progress) -> tuple[EngineAnswer, MarkerMotion, PoseTracks]:
+    answer = request.engine.answer(request.speech, request.weights, progress)
     motion = answer.motion
     loudness_db = _levels_db(request.audio)
     tracks = PoseTracks.of(request.speech.transcript, motion.rate_hz, len(motion.positions), loudness_db)
@@ -133,5 +143,11 @@ def _levels_db(audio: Audio) -> np.ndarray:
     return levels_db(audio.samples, audio.rate_hz)
 
 
-def _price(search: LiveSearch, progress: Progress) -> PricedPath | None:
-    return search.price(progress)
+def _made_engine(name: str, database: MotionDatabase) -> MotionEngine:
+    from gpu.device import open_kernels
+
+    return make_engine(name, database, open_kernels()[0])
+
+
+def _price(engine: LiveEngine, progress: Progress) -> PricedPath | None:
+    return engine.price(progress)

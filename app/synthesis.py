@@ -13,13 +13,11 @@ from app.export import VideoSettings, check_outputs, rounded_seconds, write_outp
 from app.speech import emotion_modifiers, load_speech
 from core.document.parts import FaceChoice
 from core.errors import UserFacingError
-from core.motion.database import MotionDatabase
 from core.motion.stored_weights import named_weights
 from core.progress import SILENT, Progress
-from core.search.engine import SearchAnswer, SearchEngine
-from core.search.weights import SearchWeights
+from core.search.best_path import MotionPath
 from core.synthesis.engine import SpeechInput
-from core.synthesis.options import SEARCHES
+from core.synthesis.registry import DEFAULT_ENGINE, engine_kind, make_engine
 from gpu.device import open_kernels
 
 _SLOT = re.compile("[0-9]{1,9}")
@@ -36,7 +34,7 @@ class SynthesisJob:
     database: Path | None = None
     emotion: str | None = None
     emotions: Path | None = None
-    engine: str = "search"
+    engine: str = DEFAULT_ENGINE
     face: str = "default"
     marker_file: Path | None = None
     backend: str = "auto"
@@ -49,13 +47,14 @@ class SynthesisJob:
 
 def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
     """Do the job and return the object of ``--json``; raises `UserFacingError` before anything is half-written."""
-    if job.engine not in SEARCHES:
-        raise UserFacingError(f"There is no engine '{job.engine}'.", f"Choose one of {', '.join(SEARCHES)}.")
+    kind = engine_kind(job.engine)
     check_outputs(list(job.outputs))
     _check_inputs(job)
     pins = _pins(job.pins)
+    if pins and not kind.searches:
+        raise UserFacingError(f"The engine '{job.engine}' takes no motion nodes, so none can be pinned.")
     database = open_named(job.database, progress.part(0.0, 0.1))
-    weights = _weights(job, database)
+    weights = None if job.weights == "tuned" else named_weights(job.weights, database)
     kernels, backend_sentence = open_kernels(job.backend)
 
     began = time.perf_counter()
@@ -63,42 +62,37 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
     modifiers = emotion_modifiers(job.emotion, job.emotions, speech.audio.duration_s)
     aligned_s = time.perf_counter() - began
     # a backend that was asked for by name shall do the work; all ways give the same path
-    engine = SearchEngine(database, kernels, weights, exhaustive=job.backend != "auto", options=SEARCHES[job.engine])
-    answer = engine.synthesise(SpeechInput(speech.transcript, modifiers, pins), progress.part(0.25, 0.5))
+    engine = make_engine(job.engine, database, kernels, weights, exhaustive=job.backend != "auto")
+    asked = time.perf_counter()
+    question = SpeechInput(speech.transcript, modifiers, pins, audio=speech.audio)
+    answer = engine.synthesise(question, progress.part(0.25, 0.5))
+    path, search_s = getattr(answer, "path", None), getattr(answer, "search_s", 0.0)
+    synthesis_s = getattr(answer, "synthesis_s", time.perf_counter() - asked)
 
     began = time.perf_counter()
     warnings = list(speech.transcript.warnings)
-    if job.backend == "auto" and kernels.report.backend == "numpy" and not kernels.report.lost:
+    if kind.searches and job.backend == "auto" and kernels.report.backend == "numpy" and not kernels.report.lost:
         warnings.append(backend_sentence)
     warnings += answer.warnings
     face = FaceChoice(job.face, None if job.marker_file is None else str(job.marker_file))
     stage = progress.part(0.5, 1.0)
     warnings += write_outputs(job.outputs, answer.motion, speech.audio, speech.transcript, job.video, face, stage)
     seconds = {
-        "align": aligned_s, "search": answer.search_s, "synthesis": answer.synthesis_s,
-        "render": time.perf_counter() - began,
+        "align": aligned_s, "search": search_s, "synthesis": synthesis_s, "render": time.perf_counter() - began,
     }  # fmt: skip
     return {
-        "phonemes": phoneme_rows(speech.transcript, answer, database.nodes),
-        "cost": answer.path.cost,
-        "lower_bound": answer.path.lower_bound,
-        "optimal": answer.path.is_optimal,
+        "phonemes": phoneme_rows(speech.transcript, path, database.nodes),
+        "cost": None if path is None else path.cost,
+        "lower_bound": None if path is None else path.lower_bound,
+        "optimal": None if path is None else path.is_optimal,
         "backend": backend_sentence,
-        "device": {**answer.device.as_dict(), "method": answer.method},
+        "device": None if path is None else {**answer.device.as_dict(), "method": answer.method},
         "engine": job.engine,
         "text": speech.text,
         "seconds": {name: rounded_seconds(value) for name, value in seconds.items()},
         "warnings": warnings,
         "outputs": [str(path) for path in job.outputs],
     }
-
-
-def _weights(job: SynthesisJob, database: MotionDatabase) -> SearchWeights:
-    """The weights asked for; the search as printed has its own, without those that go beyond the paper."""
-    weights = named_weights(job.weights, database)
-    if job.engine != "search-paper":
-        return weights
-    return database.paper_weights if job.weights == "tuned" else weights.as_printed
 
 
 def _check_inputs(job: SynthesisJob) -> None:
@@ -112,9 +106,10 @@ def _check_inputs(job: SynthesisJob) -> None:
             raise UserFacingError(f"'{path}' is read and cannot be written at the same time.")
 
 
-def phoneme_rows(transcript, answer: SearchAnswer, nodes) -> list[dict[str, object]]:
-    """Return one object a slot: what is said, which node says it, and what that costs."""
-    path = answer.path
+def phoneme_rows(transcript, path: MotionPath | None, nodes) -> list[dict[str, object]]:
+    """Return one object a slot: what is said, and where there is a path, which node says it and what that costs."""
+    if path is None:
+        return [{"phone": u.phone, "start_s": u.start_s, "end_s": u.end_s} for u in transcript.phonemes]
     return [
         {
             "phone": u.phone, "start_s": u.start_s, "end_s": u.end_s, "node": nodes.name(path.nodes[p]),

@@ -139,7 +139,7 @@ def _style_sheet(t: Theme) -> str:
     QPushButton[role="quiet"], QToolButton {{ background: transparent; border: 1px solid transparent;
         border-radius: 3px; padding: 2px 6px; color: {t.dim}; font-size: {SMALL_PX}px; }}
     QPushButton[role="quiet"]:hover, QToolButton:hover {{ color: {t.text}; }}
-    QPushButton[role="quiet"]:focus, QToolButton:focus {{ border-color: {t.line}; }}
+    QPushButton[role="quiet"]:focus, QToolButton:focus {{ border-color: {t.accent}; }}
     QPushButton[role="quiet"]:disabled, QToolButton:disabled {{ color: {t.line}; }}
     QToolButton:checked {{ color: {t.accent}; }}
     QPushButton::menu-indicator {{ image: url({_CHEVRON}); width: 12px; height: 12px;
@@ -158,6 +158,8 @@ def _style_sheet(t: Theme) -> str:
     QLineEdit:focus, QDoubleSpinBox:focus, QSpinBox:focus {{ border-color: {t.accent}; }}
     QLineEdit:disabled, QDoubleSpinBox:disabled, QSpinBox:disabled {{ color: {t.dim}; }}
     QListWidget {{ background: {t.canvas}; border: 1px solid {t.line}; border-radius: 4px; outline: none; }}
+    QListView {{ border: 1px solid transparent; }}
+    QListView:focus {{ border-color: {t.accent}; }}
     QListWidget::item {{ padding: 4px 8px; }}
     QListWidget::item:selected {{ background: {t.line}; color: {t.text}; }}
     QFrame[role="chooser"] {{ background: {t.raised}; border: 1px solid {t.line}; border-radius: 6px; }}

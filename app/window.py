@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from PySide6.QtCore import QByteArray, QEvent, Qt
-from PySide6.QtWidgets import QApplication, QMessageBox, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QApplication, QInputDialog, QMessageBox, QSplitter, QVBoxLayout, QWidget
 
 from app import texts
 from app.actions import Actions, ButtonKeys
@@ -13,7 +13,7 @@ from app.asking import AskingWindow
 from app.authoring import Authoring
 from app.emotion_colours import emotion_colours
 from app.garbage import MainThreadGarbage
-from app.icons import icon
+from app.icons import icon, renew_icons
 from app.menus import make_menus
 from app.panels.control import WIDTH_PX, ControlPanel
 from app.panels.export_dialog import ExportDialog
@@ -26,10 +26,12 @@ from app.panels.status import StatusLine
 from app.panels.timeline.bar import TimelinePane
 from app.panels.timeline.timeline import Timeline
 from app.panels.video import VideoPane
+from app.theme import apply_theme
 from app.versions import Versions
 from core.document.change import Change
 
 DEMO_START = "demo-neutral"
+HIGHEST_START_FRAME = 10**7
 _SIZE = (1600, 1000)
 
 
@@ -112,15 +114,15 @@ class MainWindow(AskingWindow):
         authoring.failed.connect(self.message.say)
         authoring.noted.connect(self.status.say)
         authoring.film.changed.connect(self._enable_save)
-        control.polish.region_chosen.connect(self.timeline.set_region)
+        control.engine.polish.region_chosen.connect(self.timeline.set_region)
         emotion_colours.changed.connect(self.timeline.renew)
         self.isomap.previewed.connect(self.preview.show_pick)
         self.preview.pin_asked.connect(self.isomap.pin_kept)
-        control.speech_asked.connect(self.ask_speech)
-        control.transcript_asked.connect(self.ask_transcript)
-        control.emotions_asked.connect(self.ask_emotions)
-        control.face_asked.connect(self.ask_face)
-        control.database_asked.connect(self.ask_database)
+        control.speech.speech_asked.connect(self.ask_speech)
+        control.speech.transcript_asked.connect(self.ask_transcript)
+        control.emotion.emotions_asked.connect(self.ask_emotions)
+        control.face.face_asked.connect(self.ask_face)
+        control.database.database_asked.connect(self.ask_database)
         self.video.save_button.clicked.connect(self.ask_save_film)
         self.video.reference_asked.connect(self.ask_reference)
         authoring.document.changed.connect(self.on_document_changed)
@@ -148,9 +150,19 @@ class MainWindow(AskingWindow):
         self.motion.on_playhead_moved(self.authoring.view.playhead_s)
 
     def on_theme(self, name: str) -> None:
-        """Remember another theme; it dresses the next window."""
+        """Dress everything in another theme, and remember it."""
         self.settings.setValue("theme", name)
-        self.status.say(texts.THEME_NEXT_START)
+        apply_theme(QApplication.instance(), name)
+        emotion_colours.put_on()
+        emotion_colours.changed.emit()
+        renew_icons(self)
+
+    def ask_start_frame(self) -> None:
+        """Ask for the number of the first frame."""
+        now, title = self.authoring.document.output.start_frame, texts.ACTION_START_FRAME.replace("&", "")
+        number, wanted = QInputDialog.getInt(self, title, texts.START_FRAME_ASK, now, 0, HIGHEST_START_FRAME)
+        if wanted:
+            self.authoring.set_start_frame(number)
 
     def frame_view(self) -> None:
         """Frame the pane that has the focus; without one, both faces."""

@@ -11,6 +11,7 @@ from PySide6.QtOpenGLWidgets import QOpenGLWidget
 
 from app import texts
 from app.face_light import face_light
+from app.panels.focus_ring import FocusRing
 from app.panels.marker_links import marker_links
 from app.pictures import FaceRig
 from core.motion.marker_set import MarkerSet
@@ -37,6 +38,7 @@ class FaceView(QOpenGLWidget):
         super().__init__()
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setStatusTip(texts.ORBIT_TIP)
+        self.focus_ring = FocusRing(self)
         self._renderer: FaceRenderer | None = None
         self._ctx = None
         self._markers: MarkerSet | None = None

@@ -8,6 +8,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QVBoxLayout, QWidget
 
 from app import texts
+from app.emotion_colours import emotion_colours
 from app.panels.pane import Choice, label
 from app.theme import STEP, colour, theme
 from core.synthesis.marker_motion import MarkerMotion
@@ -46,7 +47,6 @@ class MarkerPlot(QWidget):
         row.addWidget(self.legend)
         column.addLayout(row)
         self._graphs = pg.GraphicsLayoutWidget()
-        self._graphs.setBackground(colour(theme().canvas))
         column.addWidget(self._graphs, 1)
         self._plots = [self._graphs.addPlot(row=i, col=0) for i in range(2)]
         self._playheads = []
@@ -56,18 +56,15 @@ class MarkerPlot(QWidget):
             plot.setMouseEnabled(x=False, y=False)
             plot.setLabel("left", unit)
             plot.getAxis("left").setWidth(6 * STEP)
-            for side in ("left", "bottom"):
-                plot.getAxis(side).setPen(colour(theme().line))
-                plot.getAxis(side).setTextPen(colour(theme().dim))
-            line = pg.InfiniteLine(0.0, 90, pen=pg.mkPen(colour(theme().accent), width=1))
+            line = pg.InfiniteLine(0.0, 90)
             plot.addItem(line, ignoreBounds=True)
             self._playheads.append(line)
         self._plots[1].setXLink(self._plots[0])
         self._plots[0].hideAxis("bottom")
-        thick = pg.mkPen(colour(theme().accent), width=1.6)
-        thin = pg.mkPen(colour(theme().text), width=1, style=Qt.PenStyle.DashLine)
-        self._captured_curves = [plot.plot(pen=thin) for plot in self._plots]
-        self._synthesised_curves = [plot.plot(pen=thick) for plot in self._plots]
+        self._captured_curves = [plot.plot() for plot in self._plots]
+        self._synthesised_curves = [plot.plot() for plot in self._plots]
+        self.dress()
+        emotion_colours.changed.connect(self.dress)
         self.marker.currentIndexChanged.connect(lambda _: self._draw())
         self.axis.group.idClicked.connect(lambda _: self._draw())
         self._graphs.scene().sigMouseClicked.connect(self._on_clicked)
@@ -83,10 +80,31 @@ class MarkerPlot(QWidget):
             lip = None if synthesised is None else synthesised.markers.landmark("lower_lip")
             self.marker.setCurrentIndex(0 if lip is None else lip)
             self.marker.blockSignals(False)
+        self._show_legend()
+        self._draw()
+
+    def dress(self) -> None:
+        """Take the colours of the theme in use."""
+        t = theme()
+        self._graphs.setBackground(colour(t.canvas))
+        for plot in self._plots:
+            for side in ("left", "bottom"):
+                plot.getAxis(side).setPen(colour(t.line))
+                plot.getAxis(side).setTextPen(colour(t.dim))
+        pens = (
+            (self._playheads, pg.mkPen(colour(t.accent), width=1)),
+            (self._captured_curves, pg.mkPen(colour(t.text), width=1, style=Qt.PenStyle.DashLine)),
+            (self._synthesised_curves, pg.mkPen(colour(t.accent), width=1.6)),
+        )
+        for lines, pen in pens:
+            for line in lines:
+                line.setPen(pen)
+        self._show_legend()
+
+    def _show_legend(self) -> None:
         mark = f"<span style='color:{theme().accent}'>━ {texts.PLOT_SYNTHESISED}</span>"
         beside = f" &nbsp; <span style='color:{theme().text}'>╌ {texts.PLOT_CAPTURED}</span>"
-        self.legend.setText(mark + (beside if captured is not None else ""))
-        self._draw()
+        self.legend.setText(mark + (beside if self._captured is not None else ""))
 
     def show_time(self, time_s: float) -> None:
         """Move the playhead."""

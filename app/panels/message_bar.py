@@ -6,7 +6,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QToolButton
 
 from app import texts
-from app.icons import icon
+from app.icons import put_icon
 from app.theme import STEP
 
 
@@ -23,7 +23,7 @@ class MessageBar(QFrame):
         self._label.setTextFormat(Qt.TextFormat.PlainText)
         row.addWidget(self._label, 1)
         self.close_button = QToolButton(toolTip=texts.CLOSE_TIP)
-        self.close_button.setIcon(icon("cross"))
+        put_icon(self.close_button, "cross")
         self.close_button.clicked.connect(self.hide)
         row.addWidget(self.close_button, 0, Qt.AlignmentFlag.AlignTop)
         self.hide()

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QSplitter, QToolButton
+from PySide6.QtWidgets import QSplitter
 
 from app import texts
 from app.authoring import Authoring
 from app.panels.face_view import FaceView
 from app.panels.marker_plot import MarkerPlot
-from app.panels.pane import Choice, Pane
+from app.panels.pane import Choice, Pane, toggle
 from app.panels.transport import Transport
 from app.theme import STEP
 from core.document.change import Change
@@ -38,9 +38,9 @@ class MotionPane(Pane):
         super().__init__(texts.MOTION, both, texts.WAITING_DATABASE)
         self._authoring = authoring
         self.captured: MarkerMotion | None = None
-        self.plot_button = self._toggle(texts.PLOT, texts.PLOT_TIP, self.plot.setVisible)
-        self.trails_button = self._toggle(texts.TRAILS, texts.TRAILS_TIP, self._show_now)
-        self.captured_button = self._toggle(texts.PLOT_CAPTURED, texts.CAPTURED_TIP, self._show_now)
+        self.plot_button = toggle(texts.PLOT, texts.PLOT_TIP, self.plot.setVisible)
+        self.trails_button = toggle(texts.TRAILS, texts.TRAILS_TIP, self._show_now)
+        self.captured_button = toggle(texts.PLOT_CAPTURED, texts.CAPTURED_TIP, self._show_now)
         for button in (self.plot_button, self.trails_button, self.captured_button):
             self.header.addWidget(button)
         self.header.addSpacing(STEP)
@@ -67,12 +67,6 @@ class MotionPane(Pane):
         authoring.document.changed.connect(self.on_document_changed)
         self.plot.time_asked.connect(authoring.seek)
         self.on_document_changed(Change.NODES | Change.SPEECH | Change.ALIGNMENT | Change.PATH, None)
-
-    def _toggle(self, text: str, tip: str, done) -> QToolButton:
-        button = QToolButton(text=text, toolTip=tip, checkable=True)
-        button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        button.toggled.connect(done)
-        return button
 
     @property
     def motion(self) -> MarkerMotion | None:

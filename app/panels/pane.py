@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from html import escape
 
 from PySide6.QtCore import Qt
@@ -59,6 +60,14 @@ class ElidedLabel(QLabel):
         hint = super().sizeHint()
         hint.setWidth(self.fontMetrics().horizontalAdvance(self._whole) + 2)
         return hint
+
+
+def toggle(word: str, tip: str, toggled: Callable[[bool], None]) -> QToolButton:
+    """Make a button of a header that stays down."""
+    button = QToolButton(text=word, checkable=True, toolTip=tip)
+    button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+    button.toggled.connect(toggled)
+    return button
 
 
 class Choice(QWidget):

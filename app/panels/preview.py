@@ -79,7 +79,8 @@ class PreviewPane(Pane):
     def _show_pinning(self) -> None:
         document, view = self._authoring.document, self._authoring.view
         slot = view.map_slot
-        self.pin_button.setEnabled(self.pick is not None and slot is not None and document.database is not None)
+        self.pin_button.setEnabled(self.pick is not None and slot is not None and document.database is not None
+                                   and not document.has_no_path)  # fmt: skip
         pinned = (
             slot is not None
             and self.pick is not None

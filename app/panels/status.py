@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QToolButton, QWidget
 
 from app import texts
-from app.icons import icon
+from app.icons import put_icon
 from app.jobs import JobRunner
 from app.panels.pane import ElidedLabel, label
 from app.theme import STEP
@@ -32,7 +32,7 @@ class StatusLine(QWidget):
         self._bar = QProgressBar(maximum=_FULL, textVisible=False)
         self._bar.setFixedWidth(_BAR_PX)
         self.cancel_button = QToolButton(toolTip=texts.CANCEL_TIP)
-        self.cancel_button.setIcon(icon("cross"))
+        put_icon(self.cancel_button, "cross")
         self.cancel_button.clicked.connect(self.on_cancel_clicked)
         for widget in (self._job, self._bar, self.cancel_button):
             row.addWidget(widget)

@@ -6,7 +6,7 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QSlider, QStyle, QStyleOptionSlider, QToolButton, QWidget
 
 from app import texts
-from app.icons import icon
+from app.icons import put_icon
 from app.panels.pane import label
 from app.theme import STEP
 
@@ -91,11 +91,11 @@ class Transport(QWidget):
 
     def show_playing(self, playing: bool) -> None:
         """Show whether it plays."""
-        self.play_button.setIcon(icon("pause" if playing else "play"))
+        put_icon(self.play_button, "pause" if playing else "play")
 
     def _button(self, name: str, tip: str, asked) -> QToolButton:
         button = QToolButton(toolTip=tip)
-        button.setIcon(icon(name))
+        put_icon(button, name)
         button.setIconSize(QSize(16, 16))
         button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         button.clicked.connect(lambda: asked())

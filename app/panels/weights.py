@@ -15,10 +15,13 @@ from app.panels.fold import FoldedPage
 from app.panels.pane import label
 from app.theme import STEP
 from core.document.change import Change
+from core.motion.stored_weights import AS_PRINTED, SEARCH
 from core.search.weights import SearchWeights
+from core.synthesis.registry import PRINTED, weights_of
 
 _STEPS = 200
 _DECADES = 2.0  # to either side of the database's weight
+BEYOND_THE_PAPER = ("context_before", "context_after", "context_decay", "duration")
 _SHARES = ("alpha4", "context_decay")  # between 0 and 1; all others have no upper end
 
 
@@ -64,7 +67,7 @@ class WeightsPage(FoldedPage):
 
     def on_document_changed(self, change: Change, _origin: object) -> None:
         """Show the weights in use, and whose they are."""
-        if not change & (Change.WEIGHTS | Change.NODES):
+        if not change & (Change.WEIGHTS | Change.NODES | Change.ENGINE):
             return
         document, weights = self._authoring.document, self._weights
         self.setEnabled(weights is not None)
@@ -72,7 +75,7 @@ class WeightsPage(FoldedPage):
         if weights is None:
             self.origin.setText("")
             return
-        tuned = document.database.tuning.get("search")
+        tuned = document.database.tuning.get(AS_PRINTED if document.engine == PRINTED else SEARCH)
         if document.weights is not None:
             self.origin.setText(texts.WEIGHTS_OWN)
         elif tuned:
@@ -81,6 +84,7 @@ class WeightsPage(FoldedPage):
             self.origin.setText(texts.WEIGHTS_UNTUNED)
         for name, slider in self.sliders.items():
             value = getattr(weights, name)
+            slider.setEnabled(document.engine != PRINTED or name not in BEYOND_THE_PAPER)
             self._values[name].setText(f"{value:.3g}")
             if not slider.isSliderDown():
                 slider.blockSignals(True)
@@ -89,11 +93,11 @@ class WeightsPage(FoldedPage):
 
     @property
     def _weights(self) -> SearchWeights | None:
-        document = self._authoring.document
-        return document.weights or (None if document.database is None else document.database.weights)
+        return None if self._authoring.document.database is None else self._authoring.document.search_weights
 
     def _own(self, name: str) -> float:
-        return getattr(self._authoring.document.database.weights, name)
+        document = self._authoring.document
+        return getattr(weights_of(document.engine, document.database), name)
 
     def _begin(self) -> None:
         self._gesture = new_gesture()

@@ -157,9 +157,9 @@ def animated(qtbot, open_window, choose, database_path, speech_path):
 
     window = open_window()
     choose(database_path, speech_path)
-    click(window.control.open_database_button)
+    click(window.control.database.open_button)
     qtbot.waitUntil(lambda: window.authoring.document.database is not None, timeout=WAIT_MS)
-    window.control.open_speech_action.trigger()
+    window.control.speech.open_action.trigger()
     qtbot.waitUntil(lambda: window.authoring.document.speech is not None, timeout=WAIT_MS)
     click(window.control.synthesise_button)
     qtbot.waitUntil(lambda: window.authoring.document.answer is not None, timeout=WAIT_MS)

@@ -8,8 +8,12 @@ from core.document.content import ProjectContent
 from core.document.document import Document
 from core.document.edits import SetSpeech
 from core.document.parts import DatabaseReference
-from core.document.project_file import ProjectFile
+from core.document.project_file import ProjectFile, read_project
+from core.motion.database import open_database
 from core.motion.motion_files import read_motion
+from core.search.compute import NumpyKernels
+from core.synthesis.engine import SpeechInput
+from core.synthesis.registry import make_engine
 from tests.core.document.random_edits import made_speech
 
 
@@ -24,12 +28,12 @@ def project(tmp_path):
 
     made = []
 
-    def make(speaks: bool, database: DatabaseReference | None = None):
+    def make(speaks: bool, database: DatabaseReference | None = None, engine: str = "search"):
         made.append(tmp_path / f"project{len(made)}.efase")
         path, document = made[-1], Document()
         if speaks:
             document.apply(SetSpeech.on(document, made_speech(1)))
-        document.database_reference = database
+        document.database_reference, document.engine = database, engine
         file = ProjectFile.create(path)
         file.save(ProjectContent.of(document), None if document.speech is None else document.speech.audio)
         file.close()
@@ -78,3 +82,21 @@ def test_a_file_alone_opens_the_window(efase, project, monkeypatch):
     code, _, said = efase("gone.efase")
     assert code == 2 and "There is no file 'gone.efase'" in said
     assert efase("nonsense")[0] == 2
+
+@pytest.mark.parametrize("engine", ["search-single", "search-paper", "phone-means"])
+def test_a_project_is_exported_by_the_engine_that_it_chose(efase, project, tmp_path, database_path, engine):
+    path = project(True, DatabaseReference("tiny", "0", str(database_path)), engine)
+    assert efase("export", path, "-o", tmp_path / "a.csv", "--db", database_path)[0] == 0
+    content, audio = read_project(path)
+    database = open_database(database_path)
+    question = SpeechInput(content.transcript, audio=audio)
+    expected = make_engine(engine, database, NumpyKernels()).synthesise(question).motion.positions
+    positions, _, _ = read_motion(tmp_path / "a.csv")
+    # written at 30 frames a second with four decimals; the tiny database is captured at 60
+    assert positions == pytest.approx(expected[::2][: len(positions)], abs=1e-3)
+
+
+def test_an_engine_that_this_workstation_does_not_have_is_told(efase, project, tmp_path, database_path):
+    path = project(True, DatabaseReference("tiny", "0", str(database_path)), "dream")
+    code, _, said = efase("export", path, "-o", tmp_path / "a.csv", "--db", database_path)
+    assert code == 2 and "no engine 'dream'" in said and not (tmp_path / "a.csv").exists()

@@ -63,7 +63,7 @@ def test_a_clicked_phoneme_brings_its_map_its_preview_and_its_cost(animated):
         assert animated.isomap.phone.currentData() == phone
         node = animated.authoring.document.database.nodes.name(animated.authoring.document.answer.path.nodes[slot])
         assert node in animated.preview.caption.whole_text
-        assert animated.control.slot_cost.text().startswith(f"/{phone}/ by {node}")
+        assert animated.control.cost.slot.text().startswith(f"/{phone}/ by {node}")
         utterance = animated.authoring.document.speech.transcript.phonemes[slot]
         assert utterance.start_s <= animated.authoring.view.playhead_s <= utterance.end_s
 
@@ -145,10 +145,10 @@ def test_enter_on_the_map_pins_and_frees_again(animated, qtbot):
 def test_another_emotion_finds_another_motion_at_once(animated, qtbot):
     document = animated.authoring.document
     before = document.answer
-    animated.control.emotion.setFocus()
-    QTest.keyClick(animated.control.emotion, Qt.Key.Key_Down)
-    QTest.keyClick(animated.control.emotion, Qt.Key.Key_Down)
-    animated.control.emotion.activated.emit(animated.control.emotion.currentIndex())
+    animated.control.emotion.chosen.setFocus()
+    QTest.keyClick(animated.control.emotion.chosen, Qt.Key.Key_Down)
+    QTest.keyClick(animated.control.emotion.chosen, Qt.Key.Key_Down)
+    animated.control.emotion.chosen.activated.emit(animated.control.emotion.chosen.currentIndex())
     assert document.modifiers[0].emotion == "anger"
     qtbot.waitUntil(lambda: document.answer is not before, timeout=WAIT_MS)
     nodes = document.database.nodes
@@ -190,7 +190,7 @@ def test_a_bad_sound_file_is_one_sentence_in_the_window(open_window, choose, qtb
     path = tmp_path / "bad.wav"
     path.write_bytes(content)
     choose(path)
-    window.control.open_speech_action.trigger()
+    window.control.speech.open_action.trigger()
     qtbot.waitUntil(lambda: window.message.text != "", timeout=WAIT_MS)
     assert "bad.wav" in window.message.text
     assert "Traceback" not in window.message.text
@@ -204,7 +204,7 @@ def test_a_bad_database_leaves_the_open_one(animated, choose, qtbot, tmp_path):
     path = tmp_path / "bad.h5"
     path.write_bytes(b"not HDF5")
     choose(path)
-    click(animated.control.open_database_button)
+    click(animated.control.database.open_button)
     qtbot.waitUntil(lambda: "bad.h5" in animated.message.text, timeout=WAIT_MS)
     assert animated.authoring.document.database is before
 
@@ -239,11 +239,11 @@ def test_a_face_that_cannot_be_read_is_one_sentence_and_the_old_choice_stays(ani
     (tmp_path / "bad.csv").write_text("marker,vertex\nring0,0\n")
     choose(mesh)
     count = animated.authoring.undo_stack.count()
-    animated.control.face.setCurrentIndex(animated.control.face.count() - 1)
-    animated.control.face.activated.emit(animated.control.face.count() - 1)
+    animated.control.face.chosen.setCurrentIndex(animated.control.face.chosen.count() - 1)
+    animated.control.face.chosen.activated.emit(animated.control.face.chosen.count() - 1)
     qtbot.waitUntil(lambda: "bad.obj" in animated.message.text, timeout=WAIT_MS)
     assert animated.authoring.document.face is None
-    assert animated.control.face.currentData() is None
+    assert animated.control.face.chosen.currentData() is None
     assert animated.authoring.undo_stack.count() == count
 
 
@@ -252,11 +252,11 @@ def test_an_emotion_file_sets_its_spans_and_a_bad_line_is_named(animated, choose
     good.write_text("0 0.5 anger 0.5\n0.5 1 joy\n")
     bad.write_text("0 0.5 envy\n")
     choose(good, bad)
-    click(animated.control.open_emotions_button)
+    click(animated.control.emotion.open_button)
     document = animated.authoring.document
     assert [(m.emotion, m.intensity) for m in document.modifiers] == [("anger", 0.5), ("happiness", 1.0)]
     assert animated.authoring.undo_stack.undoText() == "Set emotion to good.txt"
-    click(animated.control.open_emotions_button)
+    click(animated.control.emotion.open_button)
     assert "bad.txt', line 1" in animated.message.text
     assert len(document.modifiers) == 2
     qtbot.waitUntil(idle(animated), timeout=WAIT_MS)
@@ -267,7 +267,7 @@ def test_what_had_to_be_guessed_is_said_beside_the_transcript(open_window, choos
     (tmp_path / "hum.lab").write_text("0 0.1 pau\n0.1 1.0 ʙ\n1.0 1.1 pau\n", encoding="utf-8")
     window = open_window()
     choose(tmp_path / "hum.wav")
-    window.control.open_speech_action.trigger()
+    window.control.speech.open_action.trigger()
     qtbot.waitUntil(lambda: window.authoring.document.speech is not None, timeout=WAIT_MS)
-    assert window.control.speech_warning.isVisible()
-    assert "ʙ" in window.control.speech_warning.whole_text
+    assert window.control.speech.warning.isVisible()
+    assert "ʙ" in window.control.speech.warning.whole_text

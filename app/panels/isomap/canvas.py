@@ -6,6 +6,8 @@ import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QPointF, Qt, Signal
 
+from app.emotion_colours import emotion_colours
+from app.panels.focus_ring import FocusRing
 from app.theme import colour, theme
 
 _KEYS = {
@@ -33,9 +35,7 @@ class MapBox(pg.ViewBox):
         super().__init__(lockAspect=True, enableMenu=False)
         self.tool = self._drag_tool = MOVE
         self._way: list[QPointF] = []
-        self._outline = pg.PlotCurveItem(
-            pen=pg.mkPen(colour(theme().accent), width=1), fillLevel=None, brush=colour(theme().accent, 0.12)
-        )
+        self._outline = pg.PlotCurveItem(fillLevel=None)
         self._outline.setZValue(Z_OUTLINE)
         self.addItem(self._outline, ignoreBounds=True)
 
@@ -54,6 +54,8 @@ class MapBox(pg.ViewBox):
         """Move the plane, or draw an outline around dots."""
         if event.isStart():
             self._drag_tool = self._tool_for(event)
+            self._outline.setPen(pg.mkPen(colour(theme().accent), width=1))
+            self._outline.setBrush(colour(theme().accent, 0.12))
         if self._drag_tool == MOVE:
             super().mouseDragEvent(event, axis)
             return
@@ -95,8 +97,14 @@ class MapCanvas(pg.GraphicsView):
     def __init__(self, box: MapBox) -> None:
         super().__init__(background=theme().canvas)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.focus_ring = FocusRing(self)
         self._box = box
         self.setCentralItem(box)
+        emotion_colours.changed.connect(self.dress)
+
+    def dress(self) -> None:
+        """Take the ground of the theme in use."""
+        self.setBackground(theme().canvas)
 
     def mouseDoubleClickEvent(self, event) -> None:
         """Say what was double-clicked."""

@@ -42,13 +42,21 @@ class SplatImage(pg.ImageItem):
 
 
 class MapMarks(pg.ScatterPlotItem):
-    """Signs of one kind on the map."""
+    """Signs of one kind on the map, in the colour of the theme that ``role`` names; hollow, or on a halo."""
 
-    def __init__(self, symbol: str | QPainterPath, css: str, size_px: float, z: float, width_px: float = 2.0) -> None:
-        halo = pg.mkBrush(colour(theme().canvas, 0.55))
-        pen = pg.mkPen(colour(css), width=width_px)
-        super().__init__(symbol=symbol, size=size_px, pen=pen, brush=halo, pxMode=True)
+    def __init__(
+        self, symbol: str | QPainterPath, role: str, size_px: float, z: float, width_px: float = 2.0,
+        hollow: bool = False,
+    ) -> None:  # fmt: skip
+        super().__init__(symbol=symbol, size=size_px, pxMode=True)
+        self._role, self._width_px, self._hollow = role, width_px, hollow
         self.setZValue(z)
+        self.dress()
+
+    def dress(self) -> None:
+        """Take the colours of the theme in use."""
+        self.setPen(pg.mkPen(colour(getattr(theme(), self._role)), width=self._width_px))
+        self.setBrush(None if self._hollow else pg.mkBrush(colour(theme().canvas, 0.55)))
 
     def show_points(self, points: np.ndarray) -> None:
         """Show signs at ``points``, shape (n, 2)."""
@@ -67,23 +75,21 @@ class NodeInUse(MapMarks):
     """The frame that the path uses now: a diamond."""
 
     def __init__(self) -> None:
-        super().__init__("d", theme().accent, MARK_PX, Z_MARKS)
+        super().__init__("d", "accent", MARK_PX, Z_MARKS)
 
 
 class PickingPoint(MapMarks):
     """The place that was picked: a cross hair."""
 
     def __init__(self) -> None:
-        super().__init__("crosshair", theme().text, MARK_PX, Z_MARKS, 1.5)
-        self.setBrush(None)
+        super().__init__("crosshair", "text", MARK_PX, Z_MARKS, 1.5, hollow=True)
 
 
 class TimeCorrectFrames(MapMarks):
     """Where each node of the map is at the relative time of the playhead: small rings."""
 
     def __init__(self) -> None:
-        super().__init__("o", theme().text, 5, Z_TIME, 1.0)
-        self.setBrush(None)
+        super().__init__("o", "text", 5, Z_TIME, 1.0, hollow=True)
         self.setOpacity(0.6)
 
 
@@ -91,15 +97,20 @@ class ContextCorrectNodes(MapMarks):
     """Nodes captured between the same two phones: a ring in a ring, at the relative time of the playhead."""
 
     def __init__(self) -> None:
-        super().__init__(_ring_in_ring(), theme().accent, 13, Z_CONTEXT + 3, 1.5)
+        super().__init__(_ring_in_ring(), "accent", 13, Z_CONTEXT + 3, 1.5)
 
 
 class WaysInContext(pg.PlotCurveItem):
     """The ways of nodes captured between the same two phones, faintly."""
 
     def __init__(self) -> None:
-        super().__init__(pen=pg.mkPen(colour(theme().accent, 0.4), width=1), antialias=True)
+        super().__init__(antialias=True)
         self.setZValue(Z_CONTEXT)
+        self.dress()
+
+    def dress(self) -> None:
+        """Take the colours of the theme in use."""
+        self.setPen(pg.mkPen(colour(theme().accent, 0.4), width=1))
 
     def show_ways(self, ways: list[np.ndarray]) -> None:
         """Show ways, each of shape (n_frames, 2)."""
@@ -114,15 +125,15 @@ class SelectedFrames(MapMarks):
     """All frames of the selected nodes: a bright rim around each dot."""
 
     def __init__(self) -> None:
-        super().__init__("o", theme().accent, 8, Z_SELECTED, 1.5)
+        super().__init__("o", "accent", 8, Z_SELECTED, 1.5)
 
 
 class NodeTrajectory(pg.GraphicsObject):
     """The way of one motion node: brighter as time goes by, with arrow heads, and its length in time at the end."""
 
-    def __init__(self, css: str, width_px: float, says_time: bool = True) -> None:
+    def __init__(self, role: str, width_px: float, says_time: bool = True) -> None:
         super().__init__()
-        self._css, self._width_px, self._says_time = css, width_px, says_time
+        self._role, self._width_px, self._says_time = role, width_px, says_time
         self._points, self._duration_s = _NO_POINTS, 0.0
         self.setZValue(Z_TRAJECTORY)
 
@@ -156,15 +167,16 @@ class NodeTrajectory(pg.GraphicsObject):
         n = len(self._points)
         if n == 0:
             return
+        css = getattr(theme(), self._role)
         transform = painter.transform()
         at_px = [transform.map(QPointF(x, y)) for x, y in self._points]
         painter.resetTransform()
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for i in range(n - 1):
-            painter.setPen(pg.mkPen(colour(self._css, 0.35 + 0.65 * (i + 1) / n), width=self._width_px))
+            painter.setPen(pg.mkPen(colour(css, 0.35 + 0.65 * (i + 1) / n), width=self._width_px))
             painter.drawLine(at_px[i], at_px[i + 1])
         painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(colour(self._css))
+        painter.setBrush(colour(css))
         painter.drawEllipse(at_px[0], 2.5, 2.5)
         self._paint_arrows(painter, np.array([[p.x(), p.y()] for p in at_px]))
         if self._says_time and self._duration_s > 0 and n > 1:

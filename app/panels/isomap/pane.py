@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QComboBox, QSplitter, QStackedWidget, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QSplitter, QVBoxLayout, QWidget
 
 from app import texts
 from app.authoring import Authoring
@@ -15,19 +15,17 @@ from app.panels.isomap.clip import NodeClip
 from app.panels.isomap.colouring import ColourBy, colouring
 from app.panels.isomap.controls import MapControls
 from app.panels.isomap.legend import MapLegend
-from app.panels.isomap.node_lists import RemovedList, SuspectList
+from app.panels.isomap.preservation import PreservationFigures
 from app.panels.isomap.pruning import Pruning
 from app.panels.isomap.removal import RemovalStrip
 from app.panels.isomap.shown_map import ShownMap
+from app.panels.isomap.side_lists import SideLists
 from app.panels.isomap.view import MapView
 from app.panels.map_pick import MapPick
-from app.panels.pane import Pane
+from app.panels.pane import Pane, toggle
 from core.document.change import Change
-from core.manifold.preservation import NeighbourPreservation, map_preservation
 from core.motion.database import MotionDatabase
-from core.progress import Progress
 from core.speech.phoneme import PAU
-from core.suspicion.ranking import SuspicionList
 
 _SIDE_PX = 210
 
@@ -45,14 +43,13 @@ class IsomapPane(Pane):
         self._authoring = authoring
         self.view, self.pca = MapView("isomap", authoring.jobs), MapView("pca", authoring.jobs)
         self.controls, self.strip = MapControls(), RemovalStrip()
-        self.suspects, self.removed = SuspectList(), RemovedList()
+        self.side = SideLists(authoring)
+        self.suspects, self.removed = self.side.suspects, self.side.removed
         super().__init__(texts.ISOMAP, self._arranged(), texts.ISOMAP_EMPTY)
         self.canvas, self.box = self.view.canvas, self.view.box
         self.kept: MapPick | None = None
         self.selection: frozenset[int] = frozenset()
         self._pointed: MapPick | None = None
-        self._suspicion: dict[str, SuspicionList] = {}
-        self._preservation: dict[tuple[str, str], tuple[NeighbourPreservation, NeighbourPreservation]] = {}
         self.clip = NodeClip(authoring.jobs, self)
         self.pruning = Pruning(authoring, self.strip, self)
         self._make_header()
@@ -65,17 +62,13 @@ class IsomapPane(Pane):
     # Making
 
     def _arranged(self) -> QWidget:
-        self._side = QStackedWidget()
-        self._side.addWidget(self.suspects)
-        self._side.addWidget(self.removed)
         across = QSplitter(Qt.Orientation.Horizontal, childrenCollapsible=False, handleWidth=1)
-        for widget in (self.view, self.pca, self._side):
+        for widget in (self.view, self.pca, self.side):
             across.addWidget(widget)
         across.setStretchFactor(0, 1)
         across.setStretchFactor(1, 1)
         across.setSizes([400, 400, _SIDE_PX])
         self.pca.hide()
-        self._side.hide()
         content = QWidget()
         column = QVBoxLayout(content)
         column.setContentsMargins(0, 0, 0, 0)
@@ -86,9 +79,9 @@ class IsomapPane(Pane):
         return content
 
     def _make_header(self) -> None:
-        self.pca_button = _toggle(texts.PCA_MAP, texts.PCA_TIP, self.show_pca)
-        self.suspects_button = _toggle(texts.SUSPECTS, texts.SUSPECTS_TIP, self.show_suspects)
-        self.removed_button = _toggle(texts.REMOVED, texts.REMOVED_TIP, self.show_removed)
+        self.pca_button = toggle(texts.PCA_MAP, texts.PCA_TIP, self.show_pca)
+        self.suspects_button, self.removed_button = self.side.suspects_button, self.side.removed_button
+        self._figures = PreservationFigures(self._authoring.jobs, self.view, self.pca, self.pca_button, self)
         for button in (self.pca_button, self.suspects_button, self.removed_button):
             self.header.addWidget(button)
         self.phone = QComboBox(toolTip=texts.PHONE_TIP)
@@ -118,6 +111,7 @@ class IsomapPane(Pane):
         for nodes in (self.suspects, self.removed):
             nodes.removal_asked.connect(self.remove_selected)
             nodes.play_asked.connect(self.play_selected)
+        self.side.found.connect(self._show_colours)
         self.clip.frame_shown.connect(self.previewed)
         self.clip.ended.connect(self._preview)
         self.strip.cancelled.connect(self.canvas.setFocus)
@@ -133,18 +127,15 @@ class IsomapPane(Pane):
         """Show other maps, another path, another pin, other prices, what is removed."""
         if change & Change.NODES:
             self.clip.stop()
-            self.suspects.show_suspects(None, ())
-            if self.suspects_button.isChecked():
-                self._look_for_suspects()
         if change & Change.CLUSTERS:
             self._fill_phones()
             self.on_map_chosen()
-        if change & (Change.CURATION | Change.NODES):
-            self._show_removals()
+        recoloured = Change.CURATION | Change.NODES
+        if self.controls.colour_by is ColourBy.PRICE:
+            recoloured |= Change.PRICES
+        if change & recoloured:
             self._show_colours()
-        elif change & Change.PRICES and self.controls.colour_by is ColourBy.PRICE:
-            self._show_colours()
-        if change & (Change.PATH | Change.CONSTRAINTS | Change.ALIGNMENT):
+        if change & (Change.PATH | Change.CONSTRAINTS | Change.ALIGNMENT | Change.ENGINE):
             self._show_used()
             self._show_title()
         if change & Change.PRICES:
@@ -162,7 +153,7 @@ class IsomapPane(Pane):
         self.pca.show_map(ShownMap.pca(database, phone) if self.pca_button.isChecked() else None)
         self.show_content()
         self._show_colours()
-        self._show_preservation()
+        self._figures.show()
         self._show_title()
         self._show_used()
 
@@ -254,10 +245,7 @@ class IsomapPane(Pane):
 
     def remove_selected(self) -> None:
         """Ask why the selected nodes are to be removed; nothing is removed before that is answered."""
-        suspicion = self._suspicion_now
-        suspected = {s.row: s.fault.value for s in suspicion.worth_watching} if suspicion is not None else {}
-        faults = {suspected[row] for row in self.selection if row in suspected}
-        self.pruning.ask(self.selection, faults.pop() if len(faults) == 1 else "")
+        self.pruning.ask(self.selection, self.side.fault_of(self.selection))
 
     def restore_selected(self) -> None:
         """Let the search use the selected nodes again."""
@@ -288,7 +276,7 @@ class IsomapPane(Pane):
         """Show the next suspect that is not removed yet, or the previous one."""
         if not self.suspects_button.isChecked():
             self.suspects_button.setChecked(True)
-        self.suspects.step(by, self.pruning.removed_rows)
+        self.suspects.step(by, self.side.removed_rows)
 
     def show_pca(self, shows: bool) -> None:
         """Show the PCA map beside the Isomap, or the Isomap alone."""
@@ -299,18 +287,7 @@ class IsomapPane(Pane):
             self.pca.show_selected(self.selection)
             self._show_colours()
             self._show_used()
-        self._show_preservation()
-
-    def show_suspects(self, shows: bool) -> None:
-        """Show the suspects beside the map."""
-        self._show_side(self.suspects, shows, self.removed_button)
-        if shows:
-            self._look_for_suspects()
-            self.suspects.view.setFocus()
-
-    def show_removed(self, shows: bool) -> None:
-        """Show the removed nodes beside the map."""
-        self._show_side(self.removed, shows, self.suspects_button)
+        self._figures.show()
 
     def frame_view(self) -> None:
         """Show the whole map."""
@@ -328,9 +305,9 @@ class IsomapPane(Pane):
     def used(self) -> MapPick | None:
         """The frame that the path uses in the selected slot at the playhead."""
         document, slot, share = self._authoring.document, self._authoring.view.slot, self._share
-        if document.answer is None or share is None or self.view.shown is None:
+        if document.path is None or share is None or self.view.shown is None:
             return None
-        node = int(document.answer.path.nodes[slot])
+        node = int(document.path.nodes[slot])
         return replace(MapPick.of_node(document.database, node, share, self.view.shown), in_use=True)
 
     @property
@@ -358,10 +335,6 @@ class IsomapPane(Pane):
         utterance = document.speech.transcript.phonemes[slot]
         share = (self._authoring.view.playhead_s - utterance.start_s) / (utterance.end_s - utterance.start_s)
         return min(max(share, 0.0), 1.0)
-
-    @property
-    def _suspicion_now(self) -> SuspicionList | None:
-        return None if self._database is None else self._suspicion.get(self._database.content_hash)
 
     def _keep(self, picked: MapPick | None) -> None:
         self.kept = picked
@@ -407,13 +380,14 @@ class IsomapPane(Pane):
         if shown is None:
             return
         by = self.controls.colour_by
-        if by is ColourBy.SUSPICION and self._suspicion_now is None:
-            self._look_for_suspects()
+        if by is ColourBy.SUSPICION and self.side.suspicion is None:
+            self.side.look_for_suspects()
         if by is ColourBy.PRICE and self.prices is None:
-            self._authoring.noted.emit(texts.PRICE_WAITS.format(phone=shown.phone))
-        score = None if self._suspicion_now is None else self._suspicion_now.score
+            waits = texts.PRICE_NEEDS_SEARCH if self._authoring.document.has_no_path else texts.PRICE_WAITS
+            self._authoring.noted.emit(waits.format(phone=shown.phone))
+        score = None if self.side.suspicion is None else self.side.suspicion.score
         painted = colouring(shown, by, score, self.prices)
-        removed = np.isin(shown.node, list(self.pruning.removed_rows))
+        removed = np.isin(shown.node, list(self.side.removed_rows))
         hidden = ~np.array(self.controls.emotions)[shown.emotion]
         for view in self._views:
             view.show_colours(painted, removed, hidden)
@@ -429,21 +403,11 @@ class IsomapPane(Pane):
             title = texts.TRIPHONE.format(before=phones[slot], phone=phones[slot + 1], after=phones[slot + 2])
             if slot in document.pins:
                 title += "   " + texts.PINNED.format(node=document.pins[slot])
+            if document.has_no_path:
+                title += "   " + texts.NO_NODE_IN_USE
         if len(self.selection) > 1:
             title += "   " + texts.SELECTED_NODES.format(count=len(self.selection))
         self.info.setText(title)
-
-    def _show_side(self, page: QWidget, shows: bool, other: QToolButton) -> None:
-        if shows:
-            other.setChecked(False)
-            self._side.setCurrentWidget(page)
-        self._side.setVisible(self.suspects_button.isChecked() or self.removed_button.isChecked())
-
-    def _show_removals(self) -> None:
-        document = self._authoring.document
-        removals = {**document.shared_removals, **document.removed_here}
-        self.removed.show_removals(self._database, {n: r for n, r in removals.items() if n in document.removed})
-        self.suspects.show_removed(self.pruning.removed_rows)
 
     def _fill_phones(self) -> None:
         self.phone.clear()
@@ -451,58 +415,3 @@ class IsomapPane(Pane):
         for phone, shown in sorted(database.maps.items()) if database is not None else ():
             self.phone.addItem(texts.PHONE_ITEM.format(phone=phone, frames=len(shown.frames)), phone)
         self.phone.setVisible(self.phone.count() > 0)
-
-    # Work in the background
-
-    def _look_for_suspects(self) -> None:
-        database = self._database
-        if database is None:
-            return
-        if self._suspicion_now is not None:
-            self._show_suspicion()
-        elif not self._authoring.jobs.is_running("suspicion"):
-
-            def found(suspicion: SuspicionList) -> None:
-                self._suspicion[database.content_hash] = suspicion
-                self._show_suspicion()
-                self._show_colours()
-
-            self._authoring.jobs.start("suspicion", texts.LOOKING_FOR_FAULTS, database, SuspicionList.of, found)
-
-    def _show_suspicion(self) -> None:
-        if self._suspicion_now is not None:
-            self.suspects.show_suspects(self._database.nodes, self._suspicion_now.worth_watching)
-            self.suspects.show_removed(self.pruning.removed_rows)
-
-    def _show_preservation(self) -> None:
-        """Say in the corner of each map which it is and how many neighbours it keeps, when there are two."""
-        shown = self.view.shown
-        if shown is None or not self.pca_button.isChecked():
-            self.view.show_caption("")
-            return
-        key = shown.database.content_hash, shown.phone
-        if key not in self._preservation:
-            self.view.show_caption(texts.ISOMAP_MAP)
-            self.pca.show_caption(texts.PCA_MAP)
-
-            def compared(figures: tuple[NeighbourPreservation, NeighbourPreservation]) -> None:
-                self._preservation[key] = figures
-                self._show_preservation()
-
-            self._authoring.jobs.start("preservation", texts.COMPARING_MAPS, shown, _compare, compared)
-            return
-        isomap, pca = self._preservation[key]
-        for view, name, figures in ((self.view, texts.ISOMAP_MAP, isomap), (self.pca, texts.PCA_MAP, pca)):
-            view.show_caption(texts.PRESERVATION.format(map=name, figures=figures))
-        self.pca_button.setToolTip(texts.PCA_TIP + texts.PRESERVATION_TIP.format(isomap=isomap, pca=pca))
-
-
-def _compare(shown: ShownMap, progress: Progress) -> tuple[NeighbourPreservation, NeighbourPreservation]:
-    return map_preservation(shown.map, shown.database.frames, progress)
-
-
-def _toggle(word: str, tip: str, toggled) -> QToolButton:
-    button = QToolButton(text=word, checkable=True, toolTip=tip)
-    button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-    button.toggled.connect(toggled)
-    return button

@@ -8,7 +8,6 @@ from app import texts
 from app.authoring import Authoring
 from app.panels.isomap.removal import RemovalStrip
 from core.document.change import Change
-from core.errors import UserFacingError
 
 
 class Pruning(QObject):
@@ -23,17 +22,6 @@ class Pruning(QObject):
         strip.confirmed.connect(self._on_confirmed)
         strip.cancelled.connect(strip.hide)
         authoring.document.changed.connect(self.on_document_changed)
-
-    @property
-    def removed_rows(self) -> frozenset[int]:
-        """Rows of the nodes that no search uses."""
-        database, rows = self._authoring.document.database, set()
-        for name in self._authoring.document.removed if database is not None else ():
-            try:
-                rows.add(database.nodes.row(name))
-            except UserFacingError:
-                continue  # the list may be older or newer than the database
-        return frozenset(rows)
 
     def ask(self, rows: frozenset[int], suggested: str = "") -> None:
         """Ask why these nodes are to be removed; those that are removed already are left out."""
@@ -66,17 +54,17 @@ class Pruning(QObject):
         if change & Change.CURATION:
             gone, back = document.removed - self._removed, self._removed - document.removed
             self._removed = document.removed
-            if document.answer is not None and (gone or back) and not change & Change.NODES:
+            if document.path is not None and (gone or back) and not change & Change.NODES:
                 word = texts.NODES_REMOVED if gone else texts.NODES_RESTORED
                 self._waiting = word.format(what=_what(tuple(gone or back))), self._cost
-        elif change & Change.PATH and self._waiting is not None and document.answer is not None:
+        elif change & Change.PATH and self._waiting is not None and document.path is not None:
             (what, before), self._waiting = self._waiting, None
             sentence = texts.COST_STAYED if abs(self._cost - before) < 5e-3 else texts.COST_MOVED
             self._authoring.noted.emit(sentence.format(what=what, before=before, after=self._cost))
 
     @property
     def _cost(self) -> float:
-        return self._authoring.document.answer.path.cost / self._authoring.document.cost_unit
+        return self._authoring.document.path.cost / self._authoring.document.cost_unit
 
 
 def _what(names: tuple[str, ...]) -> str:

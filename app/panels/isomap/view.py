@@ -9,6 +9,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt, QTimer, Signal
 from PySide6.QtGui import QPolygonF
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
+from app.emotion_colours import emotion_colours
 from app.jobs import JobRunner
 from app.panels.isomap.canvas import MapBox, MapCanvas
 from app.panels.isomap.colouring import Colouring
@@ -27,7 +28,7 @@ from app.panels.isomap.shown_map import ShownMap
 from app.panels.isomap.splat_job import SplatRequest, Splats, draw_splats
 from app.panels.map_pick import MapPick
 from app.panels.pane import label
-from app.theme import STEP, theme
+from app.theme import STEP
 
 _SETTLED_MS = 150
 # the splats lie under the dots and must not outshine them
@@ -68,8 +69,8 @@ class MapView(QWidget):
         self.caption.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.splats, self.dots = SplatImage(), MotionFrameDots()
         self.splats.setOpacity(_SPLAT_OPACITY)
-        self.used_way, self.kept_way = NodeTrajectory(theme().accent, 2.0), NodeTrajectory(theme().text, 2.0)
-        self.pointed_way = NodeTrajectory(theme().text, 1.0, says_time=False)
+        self.used_way, self.kept_way = NodeTrajectory("accent", 2.0), NodeTrajectory("text", 2.0)
+        self.pointed_way = NodeTrajectory("text", 1.0, says_time=False)
         self.ways_in_context, self.context_correct = WaysInContext(), ContextCorrectNodes()
         self.time_correct, self.selected = TimeCorrectFrames(), SelectedFrames()
         self.in_use, self.picking_point = NodeInUse(), PickingPoint()
@@ -78,6 +79,9 @@ class MapView(QWidget):
             self.kept_way, self.pointed_way, self.selected, self.in_use, self.picking_point,
         ):  # fmt: skip
             self.box.addItem(item, ignoreBounds=True)
+        marks = self.context_correct, self.time_correct, self.selected, self.in_use, self.picking_point
+        for item in (self.ways_in_context, *marks):
+            emotion_colours.changed.connect(item.dress)
         self.box.pointed.connect(lambda point: self.pointed.emit(None if point is None else self.pick(point)))
         self.box.clicked.connect(self._on_clicked)
         self.box.enclosed.connect(self._on_enclosed)

@@ -7,6 +7,7 @@ from PySide6.QtGui import QColor, QIcon, QPainter, QPixmap
 from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from app import texts
+from app.emotion_colours import emotion_colours
 from app.panels.pane import Choice, label
 from app.panels.timeline.ruler import UNITS
 from app.panels.timeline.snapping import FREE, PHONEMES, WORDS
@@ -52,7 +53,6 @@ class TimelineBar(QWidget):
         self.brush = Choice(brushes)
         for emotion in EMOTIONS:
             button = self.brush.button(emotion)
-            button.setIcon(_dot(theme().emotion[emotion], hollow=emotion == "neutral"))
             button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         self.brush.choose(timeline.brush)
         self.brush.group.idClicked.connect(lambda e: timeline.set_brush(EMOTIONS[e]))
@@ -77,12 +77,19 @@ class TimelineBar(QWidget):
         row.addWidget(self._button("+", texts.ZOOM_IN_TIP, lambda: timeline.zoom(_ZOOM)))
         row.addWidget(self._button(texts.ZOOM_ALL, texts.ZOOM_ALL_TIP, timeline.zoom_all))
         timeline.brush_changed.connect(self._show_brush)
+        emotion_colours.changed.connect(self.show_colours)
+        self.show_colours()
 
     def _button(self, text: str, tip: str, done) -> QToolButton:
         button = QToolButton(text=text, toolTip=tip)
         button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         button.clicked.connect(lambda checked=False: done(checked) if button.isCheckable() else done())
         return button
+
+    def show_colours(self) -> None:
+        """Give each brush the colour of its emotion."""
+        for emotion in EMOTIONS:
+            self.brush.button(emotion).setIcon(_dot(theme().emotion[emotion], hollow=emotion == "neutral"))
 
     def _show_brush(self, emotion: str) -> None:
         self.brush.button(emotion).setChecked(True)

@@ -53,6 +53,10 @@ def paint_lanes(timeline: Timeline, picture: QPixmap) -> None:
     paint_changed(painter, lanes["phonemes"], scale, [slots[p] for p in timeline.authoring.changed_slots])
     paint_emotions(painter, lanes["emotion"], scale, document.modifiers, end_s)
     paint_curve(painter, lanes["curve"], scale, document.polish, timeline.region, end_s)
+    if document.has_no_path:
+        painter.setFont(small_font())
+        painter.setPen(colour(theme().dim))
+        painter.drawText(lanes["cost"].adjusted(STEP, 0, 0, 0), Qt.AlignmentFlag.AlignVCenter, texts.NO_STRIP)
     if document.breakdown is not None and len(document.breakdown) == len(slots):
         paint_costs(painter, lanes["cost"], scale, slots, document.breakdown)
     prices = document.next_best_prices

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
 
 from app import texts
 from app.authoring import Authoring
+from app.panels.focus_ring import FocusRing
 from app.panels.timeline.curve_lane import LANE, DragKey, remove_key
 from app.panels.timeline.gestures import DragBoundary, Gesture, PaintEmotion, Scrub
 from app.panels.timeline.lanes import TimeScale, paint_playhead
@@ -61,6 +62,7 @@ class Timeline(QWidget):
         self._gesture: Gesture | None = None
         self._lanes_picture: QPixmap | None = None  # painted once; only the playhead moves sixty times a second
         self._editor = PhonemeEditor(self)
+        self.focus_ring = FocusRing(self)
         self.setStatusTip(texts.TIMELINE_TIP)
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)

@@ -32,7 +32,7 @@ def at_work(open_window, qtbot, database_path, speech_path):
 
 
 def test_a_slider_solves_anew_and_a_drag_is_one_step_of_undo(at_work, qtbot):
-    window, authoring, page = at_work, at_work.authoring, at_work.control.weights
+    window, authoring, page = at_work, at_work.authoring, at_work.control.engine.weights
     first, n_steps = authoring.document.answer, authoring.undo_stack.count()
     slider = page.sliders["alpha1"]
     slider.setSliderDown(True)
@@ -43,7 +43,7 @@ def test_a_slider_solves_anew_and_a_drag_is_one_step_of_undo(at_work, qtbot):
     assert authoring.document.weights.alpha1 == pytest.approx(weight_at("alpha1", 180, own.alpha1))
     assert authoring.undo_stack.count() == n_steps + 1
     qtbot.waitUntil(lambda: authoring.document.answer is not first, timeout=20_000)
-    assert window.control.cost.text()
+    assert window.control.cost.whole.text()
     authoring.undo_stack.undo()
     assert authoring.document.weights is None
     assert slider.value() == 100
@@ -52,7 +52,7 @@ def test_a_slider_solves_anew_and_a_drag_is_one_step_of_undo(at_work, qtbot):
 
 
 def test_reset_takes_the_weights_of_the_database_again(at_work, qtbot):
-    authoring, page = at_work.authoring, at_work.control.weights
+    authoring, page = at_work.authoring, at_work.control.engine.weights
     assert not page.reset.isEnabled()
     page.sliders["pnt"].setValue(150)
     assert authoring.document.weights is not None and page.reset.isEnabled()
@@ -62,7 +62,7 @@ def test_reset_takes_the_weights_of_the_database_again(at_work, qtbot):
 
 
 def test_the_page_is_folded_until_it_is_wanted(at_work):
-    page = at_work.control.weights
+    page = at_work.control.engine.weights
     assert not page.sliders["alpha1"].isVisible()
     page.head.click()
     assert page.sliders["alpha1"].isVisible()

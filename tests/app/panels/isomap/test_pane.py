@@ -233,7 +233,7 @@ def test_the_pca_map_comes_beside_with_figures_of_both(pane, qtbot):
 
 def test_suspects_are_listed_and_stepped_through(pane, animated, qtbot):
     QTest.mouseClick(pane.suspects_button, LEFT)
-    qtbot.waitUntil(lambda: pane._suspicion_now is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: pane.side.suspicion is not None, timeout=WAIT_MS)
     if len(pane.suspects.nodes) < 2:
         pytest.skip("nothing in this small database looks contaminated")
     QTest.keyClick(pane.suspects.view, Qt.Key.Key_N)

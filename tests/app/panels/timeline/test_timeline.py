@@ -172,7 +172,7 @@ def test_keys_of_the_polish_curve_are_set_dragged_and_taken_away_and_undone(anim
 
 def test_polish_stays_when_the_search_answers_anew(animated, qtbot):
     document = animated.authoring.document
-    slider = animated.control.polish.sliders["expression"]
+    slider = animated.control.engine.polish.sliders["expression"]
     slider.setValue(25)
     assert document.polish.expression == 0.5
     qtbot.waitUntil(lambda: not animated.authoring.jobs.is_running("polish"), timeout=WAIT_MS)
