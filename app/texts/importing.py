@@ -80,3 +80,65 @@ FILES_APART = "{n} sound files without motion"
 FILES_UNUSED = "{n} files not used"
 STATE_FILES = "{n} sentences"
 STATE_PROBLEMS = "{n} sentences, {bad} unreadable"
+
+# Markers
+MARKERS = "Markers"
+MARKERS_HINT = (
+    "Which captured marker is which. Names decide first, then places. Click a dot at the left and its place at the "
+    "right to match them by hand; a level line is a good sign."
+)
+WANTED = "Markers of the database:"
+WANTED_TIP = "Keep the capture's own markers, or give them the names and parts of another set"
+WANTED_OWN = "the capture's own markers"
+WANTED_OURS = "the workstation's 102 markers"
+WANTED_OPEN = "those of the open database “{name}”"
+WANTED_FILE = "those of another database…"
+MATCHING = "Matching markers"
+MATCH_AGAIN = "Match again"
+MATCH_AGAIN_TIP = "Forget pairs made by hand and propose anew"
+CAPTURED = "captured"
+ON_THE_FACE = "database"
+ON_THE_FACE_OWN = "landmarks of the face"
+NOT_USED = "– not used –"
+KEPT_AS_IS = "– kept, no landmark –"
+MATCH_COLUMNS = ("Captured", "Is", "Told by", "Off")
+MATCH_COLUMNS_OWN = ("Captured", "Landmark", "Told by", "Off")
+MATCH_COLUMN_TIPS = (
+    "Name in the motion file",
+    "Double-click or F2 to choose; Delete takes the pair apart",
+    "What the pair was told by; a weak one is worth a look",
+    "Distance of the two after the capture is laid on the face",
+)
+HOW = {"name": "name", "alike": "name, nearly", "place": "place", "hand": "hand"}
+MATCHED_TIP = "{found}\nis {wanted}"
+UNMATCHED_TIP = "{found}\nis matched to nothing"
+WANTED_ALONE_TIP = "{wanted}\nis not in the capture"
+ALONE = "Not in the capture: {names}"
+MATCH_LEGEND = "● matched   □ alone   ┄ doubtful"
+STATE_OWN = "{n} markers, {landmarks} landmarks"
+STATE_MATCHED = "{n} of {wanted} matched"
+
+# Head
+HEAD = "Head"
+HEAD_HINT = (
+    "Markers that keep their places on the head tell its motion, which is taken out. Click dots to change which; what "
+    "they still move after that should stay below about 1 mm."
+)
+ORIGIN = "Origin marker:"
+ORIGIN_TIP = "The marker that is put at zero, best on the bridge of the nose; none: the middle of the rigid ones"
+ORIGIN_NONE = "middle of the rigid markers"
+PROPOSE = "Propose"
+PROPOSE_TIP = "Choose the markers that move least against each other"
+HEAD_LEGEND = "rigid ●   origin ◎   other ○"
+HEAD_COLUMNS = ("Near-rigid marker", "Moves")
+RESIDUAL = "Off its place (mm)"
+RESIDUAL_TIME = "Time in “{name}” (s)"
+RESIDUAL_NOTE = "{n} rigid markers of “{name}”: {rms:.2f} mm RMS, {most:.2f} mm at most"
+RESIDUAL_FEW = "Choose three rigid markers at least, or all markers are taken to be rigid."
+FINDING_STEADY = "Looking for steady markers"
+MEASURING_HEAD = "Measuring the head"
+STATE_HEAD = "{n} rigid, {rms:.2f} mm"
+STATE_HEAD_SHORT = "{n} rigid markers"
+MM = "{mm:.2f} mm"
+TAKE = "Sentence:"
+TAKE_TIP = "The sentence that is plotted (Page Up, Page Down)"

@@ -21,12 +21,14 @@ from core.progress import Progress
 class ImportDraft(QObject):
     """One plan, changed by whole plans, so that undo is the plan before.
 
-    changed() : the plan is another; learnt() : something was read from its files
+    changed() : the plan is another; learnt() : something was read from its files; measured() : a page knows more
+    current : name of the sentence that the pages speak of
     failed(sentence, remedy), noted(sentence) : for the window
     """
 
     changed = Signal()
     learnt = Signal()
+    measured = Signal()
     failed = Signal(str, str)
     noted = Signal(str)
 
@@ -36,6 +38,7 @@ class ImportDraft(QObject):
         self.plan: ImportPlan | None = None
         self.survey: Survey | None = None
         self.facts: dict[str, CaptureFacts] = {}
+        self.current = ""
         self.undo_stack = QUndoStack(self)
         self._paths: tuple[Path, ...] = ()
         jobs.failed.connect(self.failed)

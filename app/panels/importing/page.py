@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import pyqtgraph as pg
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QLabel, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QComboBox, QLabel, QStackedWidget, QVBoxLayout, QWidget
 
 from app.panels.importing.draft import ImportDraft
 from app.panels.pane import label
+from app.texts import importing as texts
 from app.theme import STEP, colour, theme
+from core.importing.plan import SentencePlan
 
 _HEADING_PX = 18
 
@@ -85,6 +87,41 @@ class Page(QWidget):
         super().showEvent(event)
         if self._stale:
             self._renew()
+
+
+class SentenceBox(QComboBox):
+    """Which sentence a page speaks of; the same on all pages.
+
+    chosen(name) : the user chose another
+    """
+
+    chosen = Signal(str)
+
+    def __init__(self, draft: ImportDraft) -> None:
+        super().__init__(toolTip=texts.TAKE_TIP)
+        self._draft = draft
+        self.setMinimumWidth(20 * STEP)
+        self.currentTextChanged.connect(self._on_text)
+
+    @property
+    def sentence(self) -> SentencePlan | None:
+        """The chosen sentence, as it is planned now."""
+        return next((s for s in self._draft.sentences if s.name == self.currentText()), None)
+
+    def renew(self) -> None:
+        """Offer the draft's sentences."""
+        names = [s.name for s in self._draft.sentences]
+        self.blockSignals(True)
+        if names != [self.itemText(i) for i in range(self.count())]:
+            self.clear()
+            self.addItems(names)
+        wanted = self._draft.current if self._draft.current in names else next(iter(names), "")
+        self.setCurrentText(wanted)
+        self.blockSignals(False)
+
+    def _on_text(self, name: str) -> None:
+        self._draft.current = name
+        self.chosen.emit(name)
 
 
 def themed_plot(left: str, bottom: str = "") -> pg.PlotWidget:

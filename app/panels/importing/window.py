@@ -23,6 +23,8 @@ from app.icons import icon
 from app.jobs import JobRunner
 from app.panels.importing.draft import ImportDraft
 from app.panels.importing.files_page import FilesPage
+from app.panels.importing.head_page import HeadPage
+from app.panels.importing.markers_page import MarkersPage
 from app.panels.importing.page import Page
 from app.panels.message_bar import MessageBar
 from app.panels.status import StatusLine
@@ -30,7 +32,7 @@ from app.settings import last_folder, remember_folder, window_settings
 from app.texts import importing as texts
 from app.theme import STEP, theme
 
-_STEPS_PX = 200
+_STEPS_PX = 216
 _SIZE = (1240, 780)
 _FOLDER = "captures"
 
@@ -57,6 +59,7 @@ class ImportWindow(QWidget):
         self.steps.currentRowChanged.connect(self.on_step)
         self.draft.changed.connect(self._show_states)
         self.draft.learnt.connect(self._show_states)
+        self.draft.measured.connect(self._show_states)
         self.draft.failed.connect(self.message.say)
         self.draft.noted.connect(self.status.say)
         self._add_keys()
@@ -65,11 +68,14 @@ class ImportWindow(QWidget):
 
     def _make_pages(self) -> tuple[Page, ...]:
         self.files = FilesPage(self.draft)
-        return (self.files,)
+        self.markers = MarkersPage(self.draft, self.authoring)
+        self.head = HeadPage(self.draft)
+        return (self.files, self.markers, self.head)
 
     def _arrange(self) -> None:
         t = theme()
         self.steps.setFixedWidth(_STEPS_PX)
+        self.steps.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.steps.setStyleSheet(
             f"QListWidget {{ background: {t.ground}; border: none; border-right: 1px solid {t.line}; border-radius: 0;"
             f" padding-top: {STEP}px; }}"
