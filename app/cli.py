@@ -11,6 +11,7 @@ from typer.core import TyperGroup
 from app.terminal import clear_failures, end_on_signals, show_log
 from app.verbs import databases, measuring, motion, speech
 from app.verbs.bench import bench
+from app.verbs.growth import db
 from core.errors import UserFacingError
 
 
@@ -38,6 +39,7 @@ app = typer.Typer(
 )  # fmt: skip
 
 app.add_typer(bench, name="bench")
+app.add_typer(db, name="db")
 for verb in (motion.demo, databases.build, databases.info, databases.tune, speech.align, motion.synth,
              measuring.evaluate):  # fmt: skip
     app.command()(verb)

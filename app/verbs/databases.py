@@ -20,6 +20,9 @@ def build(
         bool, typer.Option("--hold-out", help="Keep a sixth of the sentences out, to tune and to test on.")
     ] = False,
     split: Annotated[str | None, typer.Option(help="Hold out by sentences, letters or digits.")] = None,
+    keep_captures: Annotated[
+        bool, typer.Option("--keep-captures", help="Store whole faces too, to fit components anew when it has grown.")
+    ] = False,
     json: Json = False,
 ) -> None:
     """Build a motion database from a corpus folder."""
@@ -34,7 +37,9 @@ def build(
         read = read_corpus(corpus, progress.part(0.0, 0.1))
         if held_out or split is not None:
             read = hold_out(read, split or "sentences")
-        database = build_database(read, output, BuildSettings(n_dims=dims), progress.part(0.1, 1.0))
+        database = build_database(
+            read, output, BuildSettings(n_dims=dims, keep_captures=keep_captures), progress.part(0.1, 1.0)
+        )
     summary = {**database.summary(), "seconds_to_build": round(time.perf_counter() - began, 2)}
     if json:
         print_json(summary)

@@ -29,7 +29,7 @@ def replicated(
                 continue
             phones, lengths, motion = _sentence(frames, nodes, rows)
             if take:
-                lengths, motion = _varied(rng, lengths, motion, deviation, rate_hz)
+                lengths, motion = varied(rng, lengths, motion, deviation, rate_hz)
             stops = lengths.cumsum()
             masked = np.zeros(len(motion), bool)
             builder.add_sentence(
@@ -55,9 +55,15 @@ def _sentence(frames: np.ndarray, nodes: NodeTable, rows: np.ndarray) -> tuple[l
     return phones, np.array(lengths), np.concatenate(motion)
 
 
-def _varied(
+def varied(
     rng: np.random.Generator, lengths: np.ndarray, motion: np.ndarray, deviation: np.ndarray, rate_hz: float
 ) -> tuple[np.ndarray, np.ndarray]:
+    """Say a sentence once more: stretched by up to 15 %, scaled by up to 10 %, with a slow drift.
+
+    lengths : int, shape (n_phones,), frames of each; motion : shape (n_frames, n_dims)
+    deviation : shape (n_dims,); a tenth of it is the size of the drift
+    returns : the new lengths, and frames as many as their sum
+    """
     stretch = rng.uniform(0.85, 1.15)
     longer = np.where(lengths > 0, np.maximum(np.rint(lengths * stretch), 1), 0).astype(int)
     n_frames = int(longer.sum())
