@@ -84,3 +84,8 @@ def test_damaged_json_is_refused_in_a_sentence(tmp_path, bad):
     path.write_text(json.dumps(GOOD | bad))
     with pytest.raises(UserFacingError):
         read_curves_json(path)
+
+
+def test_damaged_copies_are_read_or_refused(tmp_path, survives_damage):
+    write_curves_json(tmp_path / "a.json", random_track(ANY_NAMES))
+    assert survives_damage(tmp_path / "a.json", read_curves_json, 200) > 50

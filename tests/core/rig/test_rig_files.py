@@ -158,3 +158,9 @@ def test_ict_facekit_is_a_rig_and_opens_its_jaw(shared_data):
     chin = rig.neutral[:9409, 1] < np.quantile(rig.neutral[:9409, 1], 0.2)
     brow = rig.neutral[:9409, 1] > np.quantile(rig.neutral[:9409, 1], 0.9)
     assert moved[:9409][chin, 1].min() < -10 and np.abs(moved[:9409][brow]).max() < 1
+
+
+def test_damaged_copies_are_read_or_refused(tmp_path, survives_damage):
+    rig = small_rig()
+    write_glb(rig, random_track(rig.names), tmp_path / "whole.glb")
+    assert survives_damage(tmp_path / "whole.glb", lambda path: load_rig(str(path)), 200) > 20
