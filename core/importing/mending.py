@@ -85,7 +85,7 @@ def mend(
         cut = _excursions(now, rate_hz, _jumps(now, rate_hz, limits))
         for gap in cut:
             now[gap.start : gap.stop, gap.marker] = np.nan
-    if model is None:
+    if model is None and np.isnan(now).any():
         model = PoseModel.fit([(now, rate_hz)], rigid)
     filled, _, _ = fill_gaps_by_pose(now, rate_hz, limits.longest_gap_s, model)
     spikes = [gap for gap in cut if _away(filled, before, gap) >= limits.least_spike_mm]

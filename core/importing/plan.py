@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
+
+import numpy as np
 
 from core.errors import UserFacingError
 from core.media.swap_in import swapped_in
@@ -17,7 +19,6 @@ from core.speech.text_file import read_text
 
 _FORMAT = "efase-import-plan 1"
 OFFSETS = ("keep", "session", "each")
-_PATHS = ("motion", "audio", "transcript")
 _LONGEST_OFFSET_S = 10.0
 
 
@@ -61,6 +62,24 @@ class SentencePlan:
 
 
 @dataclass(frozen=True)
+class Reading:
+    """What the motion files do not say of themselves; what is said here wins over them.
+
+    rate_hz, unit, picture_px : as in `core.motion.motion_track.ReadOptions`
+    axes : which captured axis points to the actor's left, up and forward, such as ``("x", "z", "-y")``
+    shape_names : file that names the weights of arrays of blendshapes; shape_sheet : file that maps such names to
+        ARKit's; or None
+    """
+
+    rate_hz: float | None = None
+    unit: str | None = None
+    picture_px: tuple[int, int] | None = None
+    axes: tuple[str, str, str] = ("x", "y", "z")
+    shape_names: str | None = None
+    shape_sheet: str | None = None
+
+
+@dataclass(frozen=True)
 class ImportPlan:
     """An import, whole: `core.importing.run.run_import` needs nothing else.
 
@@ -70,14 +89,16 @@ class ImportPlan:
         all markers of the first sentence under their own names
     origin : database name of the marker put at zero, or None (the centroid of the rigid ones)
     rigid : database names of the near-rigid markers; fewer than three: all
-    groups, landmarks : as in `core.motion.marker_set.MarkerSet`, without ``origin`` and ``rigid``
+    groups, landmarks : as in `core.motion.marker_set.MarkerSet`; ``origin`` and ``rigid`` above stand for the groups
     with_scale, outer_eye_mm : as in `core.motion.corpus.Corpus`, for tracked video
+    reading : what is said of the motion files
     mending : its limits
     offsets : ``keep`` (only the sentences' own ``offset_s``), ``session`` (also take out the one offset that was
         measured over all sentences), ``each`` (also take out each sentence's measured offset where it is sure)
     rate_hz, n_dims : of the database
     hold_out : "", or how sentences are held out to measure with (see `core.evaluation.split.hold_out`)
     lexicon : file of pronunciations, or None
+    like : a database of the same actor and markers, whose poses help to fill the gaps of short takes, or None
     """
 
     name: str
@@ -89,12 +110,14 @@ class ImportPlan:
     landmarks: Mapping[str, str] = field(default_factory=dict)
     with_scale: bool = False
     outer_eye_mm: float | None = None
+    reading: Reading = field(default_factory=Reading)
     mending: MendLimits = field(default_factory=MendLimits)
     offsets: str = "keep"
     rate_hz: float = 120.0
     n_dims: int = 25
     hold_out: str = ""
     lexicon: str | None = None
+    like: str | None = None
 
     def to_json(self) -> str:
         """Serialise for a file; `from_json` is the inverse."""
@@ -112,9 +135,13 @@ class ImportPlan:
         try:
             sentences = tuple(SentencePlan(**entry) for entry in data.pop("sentences"))
             mending = MendLimits(**data.pop("mending", {}))
+            told = data.pop("reading", {})
+            picture_px = told.pop("picture_px", None)
+            axes = tuple(told.pop("axes", ("x", "y", "z")))
+            reading = Reading(picture_px=None if picture_px is None else tuple(picture_px), axes=axes, **told)
             groups = {name: tuple(members) for name, members in data.pop("groups", {}).items()}
             rigid = tuple(data.pop("rigid", ()))
-            plan = cls(sentences=sentences, mending=mending, groups=groups, rigid=rigid, **data)
+            plan = cls(sentences=sentences, mending=mending, reading=reading, groups=groups, rigid=rigid, **data)
             check_plan(plan)
         except UserFacingError as error:
             raise UserFacingError(f"{source}: {error.message}", error.remedy) from error
@@ -146,6 +173,10 @@ def check_plan(plan: ImportPlan) -> None:
         raise UserFacingError(f"'{min(unknown)}' is no landmark.")
     if plan.offsets not in OFFSETS:
         raise UserFacingError(f"'{plan.offsets}' says nothing of offsets.", f"Choose one of {', '.join(OFFSETS)}.")
+    if sorted(axis.lstrip("-") for axis in plan.reading.axes) != ["x", "y", "z"]:
+        raise UserFacingError(f"The axes of the import are {', '.join(plan.reading.axes)}; name x, y and z once each.")
+    if np.linalg.det(axes_matrix(plan.reading.axes)) < 0:
+        raise UserFacingError(f"The axes {', '.join(plan.reading.axes)} would turn the face into its mirror image.")
     limits = plan.mending
     numbers = {"rate_hz": (plan.rate_hz, 10.0, 1000.0), "n_dims": (plan.n_dims, 1, 300),
                "longest_gap_s": (limits.longest_gap_s, 0.0, 5.0),
@@ -155,6 +186,11 @@ def check_plan(plan: ImportPlan) -> None:
     for name, (value, least, most) in numbers.items():
         if not isinstance(value, (int, float)) or not math.isfinite(value) or not least <= value <= most:
             raise UserFacingError(f"{name} of the import is {value!r}; it lies between {least:g} and {most:g}.")
+
+
+def axes_matrix(axes: Sequence[str]) -> np.ndarray:
+    """Return the matrix that turns captured row vectors by its transpose: row i is the captured axis of ``axes[i]``."""
+    return np.array([np.eye(3)["xyz".index(axis[-1])] * (-1.0 if axis[0] == "-" else 1.0) for axis in axes])
 
 
 def _check_sentence(sentence: SentencePlan) -> None:
@@ -191,9 +227,10 @@ def write_plan(plan: ImportPlan, path: Path) -> None:
         beside.write_text(_with_paths(plan, named).to_json(), encoding="utf-8")
 
 
-def _with_paths(plan: ImportPlan, change) -> ImportPlan:
-    sentences = tuple(
-        replace(s, **{kind: change(getattr(s, kind)) for kind in _PATHS if getattr(s, kind) is not None})
-        for s in plan.sentences
-    )
-    return replace(plan, sentences=sentences, lexicon=None if plan.lexicon is None else change(plan.lexicon))
+def _with_paths(plan: ImportPlan, change: Callable[[str], str]) -> ImportPlan:
+    def changed(of, names: Sequence[str]):
+        return replace(of, **{name: change(getattr(of, name)) for name in names if getattr(of, name) is not None})
+
+    sentences = tuple(changed(sentence, ("motion", "audio", "transcript")) for sentence in plan.sentences)
+    reading = changed(plan.reading, ("shape_names", "shape_sheet"))
+    return changed(replace(plan, sentences=sentences, reading=reading), ("lexicon", "like"))

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
+from core.errors import UserFacingError
 from core.importing.matching import typical_pose
+from core.motion.database import MotionDatabase
 from core.motion.normalise import normalise
 from core.motion.resample import fill_gaps
 
@@ -54,6 +56,22 @@ class PoseModel:
             reference = face.mean(axis=0)
         packed = (face - reference).reshape(len(face), -1)
         return cls(reference, packed.T @ packed / len(packed), np.asarray(rigid))
+
+    @classmethod
+    def of_database(cls, database: MotionDatabase, names: Sequence[str]) -> PoseModel:
+        """Return the poses of a database of the same actor, its markers in the order of ``names``.
+
+        Raises `UserFacingError` when it has other markers.
+        """
+        lacking = [name for name in names if name not in database.markers.names]
+        if lacking:
+            raise UserFacingError(f"The database '{database.name}' has no marker '{lacking[0]}' to learn poses from.")
+        rows = database.markers.indices(names)
+        columns = (3 * rows[:, None] + np.arange(3)).ravel()
+        basis = database.pca.basis[columns]
+        rigid = [k for k, row in enumerate(rows) if row in set(database.markers.group("rigid").tolist())]
+        return cls(database.pca.mean.reshape(-1, 3)[rows], basis * database.pca.variance @ basis.T,
+                   np.array(rigid if len(rigid) >= 3 else range(len(rows)), int))  # fmt: skip
 
     def expected(self, frames: np.ndarray, seen: np.ndarray, wanted: int) -> np.ndarray:
         """Return where marker ``wanted`` is expected in each frame, in the frames' own space; shape (n_frames, 3).

@@ -61,12 +61,11 @@ class Survey:
         plans = tuple(found.plan for found in self.sentences)
         if self.table is None:
             return ImportPlan(name, plans)
-        groups = {part: m for part, m in self.table.groups.items() if part not in ("origin", "rigid")}
         origin = self.table.groups.get("origin", ())
         return ImportPlan(
             name, plans, {marker: marker for marker in self.table.kept}, origin[0] if origin else None,
-            self.table.groups.get("rigid", ()), groups, self.table.landmarks, self.with_scale,
-            OUTER_EYE_MM if self.with_scale else None, MendLimits(faults=not self.with_scale),
+            self.table.groups.get("rigid", ()), self.table.groups, self.table.landmarks, self.with_scale,
+            OUTER_EYE_MM if self.with_scale else None, mending=MendLimits(faults=not self.with_scale),
         )  # fmt: skip
 
 

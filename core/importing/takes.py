@@ -1,0 +1,55 @@
+"""The motion of one planned sentence, whatever kind of file it lies in, turned to left, up, forward."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+
+from core.errors import UserFacingError
+from core.importing.plan import Reading, SentencePlan, axes_matrix
+from core.motion.motion_files import read_takes
+from core.motion.motion_track import MotionTrack, ReadOptions
+from core.motion.readers.blendshape_files import is_blendshape_file, read_blendshapes
+
+# Arrays of weights without a rate of their own are video's.
+_BLENDSHAPE_RATE_HZ = 30.0
+
+
+def read_take(sentence: SentencePlan, reading: Reading) -> MotionTrack:
+    """Read the motion of ``sentence``; blendshape weights become the markers of the default face.
+
+    Raises `UserFacingError` for a file or a take that is not there or cannot be used.
+    """
+    if is_blendshape_file(sentence.motion):
+        track = _weights_as_markers(sentence.motion, reading)
+    else:
+        takes = _takes(sentence.motion, ReadOptions(reading.rate_hz, reading.unit, reading.picture_px))
+        track = takes.get(sentence.take) or (next(iter(takes.values())) if len(takes) == 1 else None)
+        if track is None:
+            raise UserFacingError(f"'{sentence.motion}' has no take '{sentence.take}'.")
+    turn = axes_matrix(reading.axes)
+    if (turn == np.eye(3)).all():
+        return track
+    return replace(track, positions=np.asarray(track.positions @ turn.T, np.float32))
+
+
+@lru_cache(maxsize=2)
+def _takes(path: str, options: ReadOptions) -> dict[str, MotionTrack]:
+    return {track.take: track for track in read_takes(path, options)}
+
+
+def _weights_as_markers(path: str, reading: Reading) -> MotionTrack:
+    from core.face.blendshape_drive import markers_of_blendshapes
+    from core.face.marker_units import load_marker_units
+    from core.motion.shape_mapping import mapped, read_shape_mapping
+
+    is_array = path.lower().endswith(".npy")
+    rate_hz = reading.rate_hz or (_BLENDSHAPE_RATE_HZ if is_array else None)
+    track = read_blendshapes(path, reading.shape_names, rate_hz)
+    if is_array and reading.rate_hz is None:
+        track = replace(track, notes=(*track.notes, f"Taken to have {_BLENDSHAPE_RATE_HZ:g} frames a second."))
+    if reading.shape_sheet is not None:
+        track = mapped(track, read_shape_mapping(reading.shape_sheet))
+    return markers_of_blendshapes(track, load_marker_units())
