@@ -79,6 +79,36 @@ def close_unwanted(opened: OpenedProject) -> None:
     opened.file.close()
 
 
+def let_go(file: ProjectFile) -> bool:
+    """Close a project for good; tells whether it held nothing and had no name, so that it was deleted."""
+    if is_unnamed(file.path) and file.content.sound is None and not file.versions():
+        delete(file)
+        return True
+    file.close()
+    return False
+
+
+def delete(file: ProjectFile) -> None:
+    """Close a project and delete it."""
+    file.close()
+    file.path.unlink(missing_ok=True)
+
+
+def copied(file: ProjectFile, path: Path, content: ProjectContent, audio: Audio | None) -> ProjectFile:
+    """Return a copy, open, with ``content`` as its newest state even where ``file`` itself could not take it.
+
+    Raises `UserFacingError` when the copy cannot be written.
+    """
+    file.copy_to(path)
+    copy = ProjectFile.open(path)
+    try:
+        copy.save(content, audio)
+    except BaseException:
+        copy.close()
+        raise
+    return copy
+
+
 def find_database(request: tuple[DatabaseReference, Path], progress: Progress) -> OpenedDatabase:
     """Open the motion database that a project refers to: where it was, or beside the project under its name.
 

@@ -1,10 +1,14 @@
-"""Keeps the open project on disk: each edit is there when it returns, so nothing has to be saved."""
+"""Keeps the open project on disk: each edit is on its way there when it returns, so nothing has to be saved."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import wait as wait_for
 from pathlib import Path
+from typing import Any, TypeVar
 
-from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtCore import QCoreApplication, QEventLoop, QObject, Qt, QTimer, Signal
 
 from app import texts
 from app.authoring import Authoring
@@ -12,23 +16,42 @@ from app.loading import OpenedDatabase
 from app.project_jobs import (
     OpenedProject,
     close_unwanted,
+    copied,
     database_differences,
+    delete,
     find_database,
     is_unnamed,
+    let_go,
     make_unnamed,
     open_project,
 )
 from app.settings import forget_project, last_project, remember_project, window_settings
 from core.document.change import ANSWER, Change
 from core.document.content import ProjectContent
+from core.document.document import EMPTY
 from core.document.project_file import SUFFIX, ProjectFile
+from core.document.project_writer import ProjectWriter
 from core.errors import UserFacingError
+from core.media.audio import Audio
 
 _VIEW_AFTER_MS = 1000
+# a wait for the disk is silent for as long as this, and the window goes on painting from then on
+_SILENT_S = 0.05
+_PAINT_EVERY_S = 0.02
+
+Answer = TypeVar("Answer")
+
+
+class _Voice(QObject):
+    """Carries to the main thread how a write ended: an error or None, and whether the user asked to hear of it."""
+
+    written = Signal(object, bool)
 
 
 class ProjectKeeper(QObject):
     """Writes the document of an `Authoring` into its project file, and opens others.
+
+    A thread writes, so that no edit waits for the disk; what needs the file itself (`ask`) is done after all edits.
 
     opened() : another project is on show, or the same under another name
     began_empty() : the one that was to be opened first cannot be, so an empty one is on show
@@ -40,8 +63,11 @@ class ProjectKeeper(QObject):
     def __init__(self, authoring: Authoring, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.authoring = authoring
-        self.file: ProjectFile | None = None
+        self.file: ProjectWriter | None = None
+        self._others: Mapping[str, Any] = EMPTY
         self._settings = window_settings()
+        self._voice = _Voice()
+        self._voice.written.connect(self._on_written, Qt.ConnectionType.QueuedConnection)
         self._failed = ""
         self._view_soon = QTimer(self, singleShot=True, interval=_VIEW_AFTER_MS)
         self._view_soon.timeout.connect(self.save)
@@ -69,7 +95,8 @@ class ProjectKeeper(QObject):
     def new(self) -> bool:
         """Begin an empty project, in the data folder until it gets a name; tells whether that worked."""
         try:
-            file = make_unnamed()
+            with ThreadPoolExecutor(1) as thread:
+                file = self._waited(thread.submit(make_unnamed))
         except UserFacingError as error:
             self.authoring.failed.emit(error.message, error.remedy)
             return True
@@ -99,7 +126,7 @@ class ProjectKeeper(QObject):
         if is_new:
             content = ProjectContent(face=document.face, database=document.database_reference)
         same_database = database is not None and content.database == document.database_reference
-        self.file = project.file
+        self.file, self._others = ProjectWriter(project.file), content.others
         authoring.undo_stack.clear()
         authoring.jobs.cancel("speech")
         authoring.jobs.cancel("database")
@@ -140,42 +167,68 @@ class ProjectKeeper(QObject):
 
     # Saving
 
-    def save(self) -> bool:
-        """Write what changed since the last time; tells whether all is on disk. What refuses is said once."""
-        if self.file is None:
-            return False
+    def save(self, tells: bool = False) -> None:
+        """Have what changed since the last time written; what refuses is said once.
+
+        tells : say it, too, once all is on disk
+        """
+        if self.file is not None:
+            saved = self.file.save(*self._shown())
+            saved.add_done_callback(lambda done: self._voice.written.emit(done.exception(), tells))
+
+    def _shown(self) -> tuple[ProjectContent, Audio | None]:
         document = self.authoring.document
-        content = ProjectContent.of(document, self.authoring.view, self.file.content.others)
-        try:
-            self.file.save(content, None if document.speech is None else document.speech.audio)
-        except UserFacingError as error:
-            if self._failed != error.message:
-                self._failed = error.message
-                self.authoring.failed.emit(error.message, error.remedy or texts.SAVE_A_COPY_REMEDY)
-            return False
-        self._failed = ""
-        return True
+        content = ProjectContent.of(document, self.authoring.view, self._others)
+        return content, None if document.speech is None else document.speech.audio
+
+    def _on_written(self, error: BaseException | None, tells: bool) -> None:
+        if error is None:
+            self._failed = ""
+            if tells and self.file is not None:
+                self.authoring.noted.emit(texts.SAVED_ALREADY.format(path=self.file.path))
+        elif self._failed != str(error):
+            self._failed = str(error)
+            self.authoring.failed.emit(*_told(error))
+
+    def ask(self, do: Callable[[ProjectFile], Answer]) -> Answer:
+        """Return ``do(file)``, done after all edits so far; raises `UserFacingError` as it does.
+
+        The window goes on painting, and takes no input until the answer is there.
+        """
+        return self._waited(self.file.ask(do))
+
+    def save_now(self) -> None:
+        """Return when all that is on show is on disk; raises `UserFacingError` when it cannot be."""
+        self._waited(self.file.save(*self._shown()))
+
+    def _waited(self, answer: Future[Answer]) -> Answer:
+        if not wait_for([answer], _SILENT_S).done:
+            started, ended = self.authoring.jobs.started, self.authoring.jobs.ended
+            started.emit("saving", texts.SAVING)
+            while not wait_for([answer], _PAINT_EVERY_S).done:
+                QCoreApplication.processEvents(QEventLoop.ProcessEventsFlag.ExcludeUserInputEvents)
+            ended.emit("saving")
+        return answer.result()
 
     def say_saved(self) -> None:
-        """Answer the habit of saving."""
-        if self.file is not None and self.save():
-            self.authoring.noted.emit(texts.SAVED_ALREADY.format(path=self.file.path))
+        """Answer the habit of saving, once all is on disk."""
+        self.save(tells=True)
 
     def save_copy(self, path: Path) -> None:
-        """Write a copy; an unnamed project goes on under that name."""
+        """Write a copy of what is on show; an unnamed project goes on under that name."""
         if self.file is None:
             return
         path = path if path.suffix.lower() == SUFFIX else path.with_name(path.name + SUFFIX)
         self.save()
-        unnamed = self.file.path
+        shown, unnamed = self._shown(), self.file.path
         try:
-            self.file.copy_to(path)
+            copy = self.ask(lambda file: copied(file, path, *shown))
             if is_unnamed(unnamed):
-                file = ProjectFile.open(path)
-                self.file.close()
-                self.file = file
+                old, self.file = self.file, ProjectWriter(copy)
                 forget_project(self._settings, unnamed)
-                unnamed.unlink(missing_ok=True)
+                self._waited(old.close(delete))
+            else:
+                copy.close()
         except UserFacingError as error:
             self.authoring.failed.emit(error.message, error.remedy)
             return
@@ -184,7 +237,7 @@ class ProjectKeeper(QObject):
         self.opened.emit()
 
     def close(self) -> None:
-        """Remember what was looked at and let go of the file."""
+        """Remember what was looked at and let go of the file, once all is written."""
         self._view_soon.stop()
         self._let_go()
 
@@ -193,11 +246,8 @@ class ProjectKeeper(QObject):
             return
         self.save()
         file, self.file = self.file, None
-        holds_nothing = file.content.sound is None and not file.versions()
-        file.close()
-        if holds_nothing and is_unnamed(file.path):
+        if self._waited(file.close(let_go)):
             forget_project(self._settings, file.path)
-            file.path.unlink(missing_ok=True)
 
     def _on_document_changed(self, change: Change, _origin: object) -> None:
         if change & ~ANSWER:
@@ -206,3 +256,9 @@ class ProjectKeeper(QObject):
     def _on_view_changed(self, *_: object) -> None:
         if self.file is not None and not self._view_soon.isActive():
             self._view_soon.start()
+
+
+def _told(error: BaseException) -> tuple[str, str]:
+    if isinstance(error, UserFacingError):
+        return error.message, error.remedy or texts.SAVE_A_COPY_REMEDY
+    return texts.UNEXPECTED.format(what=texts.SAVING.lower(), error=type(error).__name__), texts.SAVE_A_COPY_REMEDY

@@ -31,32 +31,39 @@ class Versions(QObject):
 
     def names(self) -> list[str]:
         """Return the versions of the open project, oldest first."""
-        return [] if self._keeper.file is None else [version.name for version in self._keeper.file.versions()]
+        if self._keeper.file is None:
+            return []
+        return [version.name for version in self._keeper.ask(lambda file: file.versions())]
 
     def keep(self, name: str) -> None:
         """Give what is on show a name."""
-        if self._keeper.save() and self._attempt(lambda: self._keeper.file.save_version(name)):
+
+        def kept() -> None:
+            self._keeper.save_now()
+            self._keeper.ask(lambda file: file.save_version(name))
+
+        if self._keeper.file is not None and self._attempt(kept):
             self._pair_with(name.strip())
             self._authoring.noted.emit(texts.VERSION_KEPT.format(name=name.strip()))
             self.changed.emit()
 
     def forget(self, name: str) -> None:
         """Drop a version; what is on show stays."""
-        if self._attempt(lambda: self._keeper.file.forget_version(name)):
+        if self._attempt(lambda: self._keeper.ask(lambda file: file.forget_version(name))):
             self.pair = None if self.pair is not None and name in self.pair else self.pair
             self.changed.emit()
 
     def switch(self, name: str, gesture: int | None = None) -> None:
         """Make the project what it was in a version; it undoes."""
-        file, document = self._keeper.file, self._authoring.document
+        ask, document = self._keeper.ask, self._authoring.document
 
         def restore() -> None:
-            content = file.version(name)
+            content = ask(lambda file: file.version(name))
             speech = document.speech
             same_sound = (
                 speech is not None and content.sound is not None and speech.audio.digest == content.sound.digest
             )
-            audio = speech.audio if same_sound else file.audio(content)
+            audio = speech.audio if same_sound else ask(lambda file: file.audio(content))
             same_database = document.database_reference == content.database
             state = content.state(audio, document.database if same_database else None)
             if same_sound and (content.transcript, content.text) == (speech.transcript, speech.text):
@@ -90,7 +97,7 @@ class Versions(QObject):
 
     def _shows(self, name: str) -> bool:
         try:
-            then = self._keeper.file.version(name)
+            then = self._keeper.ask(lambda file: file.version(name))
         except UserFacingError:
             return False
         now = ProjectContent.of(self._authoring.document)

@@ -1,15 +1,8 @@
-"""A project on disk: one SQLite file in which each edit is one transaction.
-
-The state is kept four times over, in tables of their own that are written in turn, each with its revision and a digest.
-So a file that is copied in the very moment of an edit (SQLite's locks mean nothing to a copying program) holds one
-table that is torn, and three that are whole: the newest of those is the project after its last edit but one. A new
-sound likewise goes into another table than the sound in use.
-"""
+"""A project on disk: one SQLite file in which each edit is one transaction (its form: `project_tables`)."""
 
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import sqlite3
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -21,25 +14,27 @@ from core import sqlite_file
 from core.document.content import ProjectContent
 from core.document.content_checks import Unbelievable
 from core.document.project_lock import ProjectLock
+from core.document.project_tables import (
+    KIND,
+    LONGEST_CONTENT,
+    SOUNDS,
+    beyond_repair,
+    drop_unused_sounds,
+    is_torn,
+    newest,
+    newest_revision,
+    read_sound,
+    sound_tables,
+    write_state,
+)
+from core.document.salvage import mend, salvaged
 from core.errors import UserFacingError
-from core.media.audio import Audio, audio_from_kept
+from core.media.audio import Audio
 from core.media.swap_in import swapped_in
-from core.sqlite_file import Damaged, FileKind, transaction
+from core.sqlite_file import Damaged, transaction
 
 SUFFIX = ".efase"
-_STATES = tuple(f"state{i}" for i in range(4))
-SOUNDS = tuple(f"sound{i}" for i in range(4))
-_LONGEST_CONTENT = 1 << 28
 _LONGEST_VERSION_NAME = 200
-KIND = FileKind(
-    what="eFASE project", application_id=0x65464153, version=(1, 0),
-    tables={
-        **{name: f"CREATE TABLE {name} (revision INTEGER, digest TEXT, content TEXT)" for name in _STATES},
-        # no index: it would be shared by all sounds of the table, and there are few
-        **{name: f"CREATE TABLE {name} (digest TEXT NOT NULL, data BLOB NOT NULL)" for name in SOUNDS},
-        "version": "CREATE TABLE version (name TEXT PRIMARY KEY, made TEXT NOT NULL, content TEXT NOT NULL)",
-    },
-)  # fmt: skip
 
 
 class ReadOnlyProject(UserFacingError):
@@ -64,9 +59,9 @@ class ProjectFile:
     def __init__(self, path: Path, lock: ProjectLock, connection: sqlite3.Connection, said: tuple[str, ...]) -> None:
         self.path = path
         self._lock, self._connection = lock, connection
-        self._revision, self.content = _newest(connection, path)
+        self._revision, self.content = newest(connection, path)
         self._text = self.content.to_json()
-        self._sounds = _sound_tables(connection)
+        self._sounds = sound_tables(connection)
         self.said = said
 
     @classmethod
@@ -105,7 +100,7 @@ class ProjectFile:
     def close(self) -> None:
         """Let go of the file; sounds that nothing refers to any more are dropped."""
         with contextlib.suppress(sqlite3.Error), transaction(self._connection):
-            _drop_unused_sounds(self._connection)
+            drop_unused_sounds(self._connection)
         self._connection.close()
         self._lock.release()
 
@@ -129,7 +124,7 @@ class ProjectFile:
                     self._connection.execute(f"INSERT INTO {table} VALUES (?, ?)", row)
                 self._sounds[sound.digest] = table
             with transaction(self._connection):
-                if _newest_revision(self._connection) != self._revision:
+                if newest_revision(self._connection) != self._revision:
                     raise UserFacingError(
                         f"'{self.path}' was changed by another window.", "Save a copy of what is open here."
                     )
@@ -139,7 +134,7 @@ class ProjectFile:
 
     def audio(self, content: ProjectContent) -> Audio | None:
         """Return the sound that ``content`` refers to; raises `UserFacingError` when it is damaged."""
-        return _read_sound(self._connection, content, self.path)
+        return read_sound(self._connection, content, self.path)
 
     def copy_to(self, path: Path) -> None:
         """Write a whole copy; raises `UserFacingError` when it cannot be written."""
@@ -173,7 +168,7 @@ class ProjectFile:
         """Return what the project was in a named version; raises `UserFacingError` when there is none."""
         with _told(self.path):
             row = self._connection.execute(
-                "SELECT content FROM version WHERE name = ? AND length(content) < ?", (name, _LONGEST_CONTENT)
+                "SELECT content FROM version WHERE name = ? AND length(content) < ?", (name, LONGEST_CONTENT)
             ).fetchone()
         if row is None:
             raise UserFacingError(f"'{self.path.name}' has no version “{name}”.")
@@ -194,14 +189,12 @@ def read_project(path: Path) -> tuple[ProjectContent, Audio | None]:
         try:
             connection = sqlite_file.connect(path, KIND, writable=False)
         except Damaged:
-            from core.document.salvage import salvaged
-
             with salvaged(path) as mended, contextlib.closing(sqlite_file.connect(mended, KIND)) as connection:
-                content = _newest(connection, path)[1]
-                return content, _read_sound(connection, content, path)
+                content = newest(connection, path)[1]
+                return content, read_sound(connection, content, path)
         with contextlib.closing(connection):
-            content = _newest(connection, path)[1]
-            return content, _read_sound(connection, content, path)
+            content = newest(connection, path)[1]
+            return content, read_sound(connection, content, path)
 
 
 def _opened(path: Path) -> tuple[sqlite3.Connection, tuple[str, ...]]:
@@ -212,8 +205,6 @@ def _opened(path: Path) -> tuple[sqlite3.Connection, tuple[str, ...]]:
         connection.close()
     except Damaged:
         pass
-    from core.document.salvage import mend
-
     kept = mend(path)
     said = (
         f"'{path.name}' was damaged, as by copying it while it was written; what it holds was put in order, and the "
@@ -228,7 +219,7 @@ def _made_writable(connection: sqlite3.Connection, path: Path) -> tuple[str, ...
     try:
         with transaction(connection):
             sqlite_file.set_version(connection, max(before, KIND.version))
-            _drop_unused_sounds(connection)
+            drop_unused_sounds(connection)
     except sqlite3.Error as error:
         refusal = sqlite_file.refused(path, error)
         raise ReadOnlyProject(refusal.message, refusal.remedy) from error
@@ -243,110 +234,6 @@ def _make(path: Path, content: ProjectContent) -> None:
     sqlite_file.create(path, KIND)
     with contextlib.closing(sqlite_file.connect(path, KIND)) as connection, transaction(connection):
         write_state(connection, 1, content.to_json())
-
-
-def _digest(revision: int, text: str) -> str:
-    return hashlib.sha256(f"{revision}\n{text}".encode()).hexdigest()
-
-
-def write_state(connection: sqlite3.Connection, revision: int, text: str) -> None:
-    """Write a state in place of the one that is four revisions older."""
-    table = _STATES[revision % len(_STATES)]
-    connection.execute(f"DELETE FROM {table}")
-    connection.execute(f"INSERT INTO {table} VALUES (?, ?, ?)", (revision, _digest(revision, text), text))
-
-
-def _newest_revision(connection: sqlite3.Connection) -> int:
-    tables = " UNION ALL ".join(f"SELECT revision FROM {table}" for table in _STATES)
-    return connection.execute(f"SELECT max(revision) FROM ({tables})").fetchone()[0]
-
-
-def whole_states(connection: sqlite3.Connection) -> list[tuple[int, str]]:
-    """Return (revision, content) of the states that are as they were written, newest first."""
-    found = []
-    for table in _STATES:
-        # a torn table may be unreadable
-        with contextlib.suppress(sqlite3.DatabaseError):
-            sql = f"SELECT revision, digest, content FROM {table} WHERE length(content) < ? LIMIT 2"
-            for revision, digest, text in connection.execute(sql, (_LONGEST_CONTENT,)).fetchall():
-                if type(revision) is int and isinstance(text, str) and digest == _digest(revision, text):
-                    found.append((revision, text))
-    return sorted(found, reverse=True)
-
-
-def sound_digest(text: str) -> str | None:
-    """Return which sound a state refers to; none for a state that nobody would believe."""
-    try:
-        sound = ProjectContent.from_json(text).sound
-    except Unbelievable:
-        return None
-    return None if sound is None else sound.digest
-
-
-def has_sound(connection: sqlite3.Connection, text: str) -> bool:
-    """Whether the sound that a state refers to, if it does, is there and whole."""
-    digest = sound_digest(text)
-    try:
-        return digest is None or _sound_bytes(connection, digest) is not None
-    except sqlite3.DatabaseError:
-        return False
-
-
-def _sound_bytes(connection: sqlite3.Connection, digest: str) -> bytes | None:
-    for table in SOUNDS:
-        for (data,) in connection.execute(f"SELECT data FROM {table} WHERE digest = ?", (digest,)).fetchall():
-            if isinstance(data, bytes) and hashlib.sha256(data).hexdigest() == digest:
-                return data
-    return None
-
-
-def _sound_tables(connection: sqlite3.Connection) -> dict[str, str]:
-    return {digest: table for table in SOUNDS for (digest,) in connection.execute(f"SELECT digest FROM {table}")}
-
-
-def is_torn(connection: sqlite3.Connection) -> bool:
-    """Whether some state is not as it was written."""
-    try:
-        n_rows = sum(connection.execute(f"SELECT count(*) FROM {table}").fetchone()[0] for table in _STATES)
-        states = whole_states(connection)
-        return n_rows != len(states) or not all(has_sound(connection, text) for _, text in states[:1])
-    except sqlite3.DatabaseError:
-        return True
-
-
-def _newest(connection: sqlite3.Connection, path: Path) -> tuple[int, ProjectContent]:
-    why = "it holds no state"
-    for revision, text in whole_states(connection):
-        try:
-            return revision, ProjectContent.from_json(text)
-        except Unbelievable as error:
-            why = str(error)
-    raise beyond_repair(path, why)
-
-
-def beyond_repair(path: Path, why: object) -> UserFacingError:
-    """Return what to tell the user of a file from which nothing can be had."""
-    return UserFacingError(f"The project '{path}' is damaged ({why}).", "Open a copy of it, or begin a new one.")
-
-
-def _read_sound(connection: sqlite3.Connection, content: ProjectContent, path: Path) -> Audio | None:
-    if content.sound is None:
-        return None
-    data = _sound_bytes(connection, content.sound.digest)
-    if data is None:
-        raise beyond_repair(path, "its sound is not what it was")
-    was = content.sound.path
-    return audio_from_kept(data, f"the sound of '{path.name}'", None if was is None else Path(was))
-
-
-def _drop_unused_sounds(connection: sqlite3.Connection) -> None:
-    """Drop sounds that neither the newest state nor a version names. Undo does not reach beyond an open window."""
-    states = whole_states(connection)
-    texts = [states[0][1]] if states else []
-    texts += [text for (text,) in connection.execute("SELECT content FROM version")]
-    for digest, table in _sound_tables(connection).items():
-        if states and not any(digest in text for text in texts):
-            connection.execute(f"DELETE FROM {table} WHERE digest = ?", (digest,))
 
 
 @contextlib.contextmanager

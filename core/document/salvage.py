@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from core import sqlite_file
-from core.document.project_file import KIND, SOUNDS, beyond_repair, has_sound, sound_digest, whole_states, write_state
+from core.document.project_tables import KIND, SOUNDS, beyond_repair, has_sound, sound_digest, whole_states, write_state
 from core.media.swap_in import swapped_in
 from core.sqlite_file import transaction
 

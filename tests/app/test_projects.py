@@ -27,6 +27,11 @@ def content_of(window):
     return ProjectContent.of(window.authoring.document, window.authoring.view)
 
 
+def written(window):
+    """Wait until all edits so far are written."""
+    window.keeper.ask(lambda file: None)
+
+
 def idle(window):
     return lambda: window.authoring.jobs.is_idle
 
@@ -86,11 +91,12 @@ def test_everything_is_there_again_after_the_window_was_closed(working, open_win
     assert "Unnamed project" in again.windowTitle()
 
 
-def test_every_edit_and_its_undo_is_on_disk_at_once(working):
+def test_every_edit_and_its_undo_is_written(working, qtbot):
     window = working()
     path = window.keeper.file.path
 
     def on_disk():
+        written(window)
         return read_project(path)[0]
 
     edited(window)
@@ -100,8 +106,10 @@ def test_every_edit_and_its_undo_is_on_disk_at_once(working):
         window.authoring.undo_stack.undo()
     assert on_disk().modifiers == ()
     assert on_disk().output.frame_rate == "30"
+    notes = []
+    window.authoring.noted.connect(notes.append)
     QTest.keyClick(window, Qt.Key.Key_S, CTRL)
-    assert "Saved already" in window.status.note
+    qtbot.waitUntil(lambda: any("Saved already" in note for note in notes), timeout=WAIT_MS)
 
 
 def test_a_copy_names_an_unnamed_project_and_a_second_one_stays_behind(working, choose, tmp_path):
@@ -117,6 +125,7 @@ def test_a_copy_names_an_unnamed_project_and_a_second_one_stays_behind(working, 
     window.project_menu.ask_copy()
     assert window.keeper.file.path == tmp_path / "mine.efase"
     window.authoring.paint_emotion(0.1, 0.3, "sadness")
+    written(window)
     assert read_project(tmp_path / "other.efase")[0].modifiers == ()
     assert read_project(tmp_path / "mine.efase")[0].modifiers != ()
     assert last_project(window_settings()) == tmp_path / "mine.efase"
@@ -175,6 +184,7 @@ def test_a_list_that_cannot_be_written_removes_for_this_project(working, qtbot, 
     window.authoring.remove_nodes([name], "frozen")
     document = window.authoring.document
     assert name in document.removed and name in document.removed_here and not document.shared_removals
+    written(window)
     assert read_project(window.keeper.file.path)[0].removed_here[name].why == "frozen"
     qtbot.waitUntil(idle(window), timeout=WAIT_MS)
 
@@ -195,6 +205,7 @@ def test_a_missing_database_is_said_and_can_be_located(working, open_window, qtb
     again.authoring.open_database(moved)
     qtbot.waitUntil(lambda: again.authoring.document.answer is not None, timeout=WAIT_MS)
     assert again.authoring.document.pins == pins
+    written(again)
     assert read_project(again.keeper.file.path)[0].database.path == str(moved)
 
 
@@ -241,6 +252,7 @@ def test_export_writes_the_motion_that_the_window_shows(working, tmp_path, qtbot
         here, there = tmp_path / f"window{suffix}", tmp_path / f"command{suffix}"
         settings = VideoSettings(FRAME_RATES[document.output.frame_rate])
         export(document.answer.motion, document.speech.audio, None, here, settings)
+        written(window)
         answer = run(ExportJob(window.keeper.file.path, (there,)))
         assert here.read_bytes() == there.read_bytes()
     assert [row["node"] for row in answer["phonemes"]][5] != used

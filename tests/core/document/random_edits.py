@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import random
 import sys
+import threading
+from concurrent.futures import Future
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 
@@ -27,6 +30,7 @@ from core.document.edits import (
 )
 from core.document.parts import FaceChoice, ReferenceVideo, Speech
 from core.document.project_file import ProjectFile
+from core.document.project_writer import ProjectWriter
 from core.document.transcript_edits import MergePhonemes, MovePhonemeBoundary, RenamePhoneme, SplitPhoneme
 from core.errors import UserFacingError
 from core.media.audio import Audio
@@ -103,10 +107,22 @@ def random_edit(document: Document, chance: random.Random) -> Edit | None:
 
 
 def edit_until_killed(path: Path, seed: int) -> None:
-    """Edit the project at ``path`` for ever; tell each state's number before it is written, and after."""
-    chance, document, project = random.Random(seed), Document(), ProjectFile.open(path)
+    """Edit the project at ``path`` for ever, as a window does; tell each state's number before it is handed over to be
+    written, and once it is on disk.
+    """
+    chance, document, project = random.Random(seed), Document(), ProjectWriter(ProjectFile.open(path))
+    voice = threading.Lock()
     undone: list[Edit] = []
     number = 0
+
+    def tell(*words: object) -> None:
+        with voice:
+            print(*words, flush=True)
+
+    def tell_done(number: int, saved: Future[bool]) -> None:
+        if saved.result():
+            tell("done", number)
+
     while True:
         edit = random_edit(document, chance)
         if edit is None:
@@ -121,9 +137,12 @@ def edit_until_killed(path: Path, seed: int) -> None:
         if document.speech is None:
             continue
         number += 1
-        print("begin", number, content.to_json(), flush=True)
-        project.save(content, document.speech.audio)
-        print("done", number, flush=True)
+        tell("begin", number, content.to_json())
+        saved = project.save(content, document.speech.audio)
+        saved.add_done_callback(partial(tell_done, number))
+        # now a drag, now one edit after the other
+        if number % 100 > 40:
+            saved.result()
 
 
 if __name__ == "__main__":

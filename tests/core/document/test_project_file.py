@@ -21,6 +21,7 @@ from core.document.document import Document
 from core.document.edits import SetSpeech
 from core.document.project_file import ProjectFile, ReadOnlyProject, read_project
 from core.document.project_lock import ProjectLocked
+from core.document.project_tables import KIND
 from core.errors import UserFacingError
 from core.media.audio import Audio, audio_from_bytes
 from core.search.weights import SearchWeights
@@ -250,7 +251,7 @@ def test_what_a_newer_minor_version_wrote_is_kept(tmp_path):
 def test_an_older_minor_version_is_brought_up_to_date_and_it_is_said(tmp_path, monkeypatch):
     path = tmp_path / "a.efase"
     content = saved(path, worked_on(5))
-    newer = replace(project_file.KIND, version=(1, 4))
+    newer = replace(KIND, version=(1, 4))
     monkeypatch.setattr(project_file, "KIND", newer)
     project = ProjectFile.open(path)
     assert "older eFASE" in project.said[0]
@@ -283,7 +284,7 @@ def test_a_project_of_each_version_so_far_is_read(tmp_path, example):
 
 
 def test_every_version_has_an_example():
-    assert f"project-{project_file.KIND.version[0]}.{project_file.KIND.version[1]}" in [p.stem for p in EXAMPLES]
+    assert f"project-{KIND.version[0]}.{KIND.version[1]}" in [p.stem for p in EXAMPLES]
 
 
 @pytest.mark.parametrize(
