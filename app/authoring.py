@@ -55,6 +55,7 @@ class Authoring(Editing):
         self.curating = Curating(self.document, self)
         self.document.changed.connect(self._on_document_changed)
         self.curating.failed.connect(self.failed)
+        self.curating.noted.connect(self.noted)
         self._solving.solved.connect(self._on_solved)
         self._rigs.changed.connect(self._on_rig_changed)
         self._rigs.failed.connect(self.failed)
@@ -211,6 +212,7 @@ class Authoring(Editing):
         self.player.pause()
         self.film.shut_down()
         self.jobs.shut_down()
+        self.curating.close()
 
 
 def whole_emotion(emotion: str, intensity: float = 1.0) -> tuple[EmotionModifier, ...]:

@@ -2,41 +2,57 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 
+from app import texts
 from core.document.change import Change
 from core.document.document import EMPTY, Document
 from core.errors import UserFacingError
 from core.motion.curation import CurationList, Removal
+from core.motion.database_lock import DatabaseLock, DatabaseLocked
 
 
 class Curating(QObject):
     """Writes what an edit removes or restores, and reads what other windows did.
 
-    failed(sentence, remedy) : the list cannot be written or read
+    The first window on a database holds its lock and writes; the others read, until it is closed.
+
+    failed(sentence, remedy) : the list cannot be written or read; noted(sentence) : another window writes it
     """
 
     failed = Signal(str, str)
+    noted = Signal(str)
 
     def __init__(self, document: Document, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._document = document
         self._on_disk: Mapping[str, Removal] = EMPTY
         self._stamp: tuple[int, int] | None = None
+        self._lock: DatabaseLock | None = None
         document.changed.connect(self._on_document_changed)
 
     @property
     def can_be_written(self) -> bool:
         """Whether a removal can be shared with other projects."""
         curation = self._list
-        return curation is not None and curation.can_be_written
+        return curation is not None and curation.can_be_written and (self._lock is not None or self._is_unstored)
+
+    def close(self) -> None:
+        """Let another window write the list."""
+        if self._lock is not None:
+            self._lock.release()
+            self._lock = None
 
     def refresh(self) -> None:
-        """Take what another window wrote, if it did."""
+        """Take what another window wrote, if it did; write from now on, if the window that did is closed."""
         curation = self._list
+        if curation is not None and self._lock is None:
+            with contextlib.suppress(UserFacingError):
+                self._hold()
         if curation is None or _stamp_of(curation.path) == self._stamp:
             return
         try:
@@ -50,9 +66,26 @@ class Curating(QObject):
         database = self._document.database
         return None if database is None else CurationList.of(database)
 
+    @property
+    def _is_unstored(self) -> bool:
+        database = self._document.database
+        return database is not None and database.path is None
+
+    def _hold(self) -> None:
+        database = self._document.database
+        if database is not None and database.path is not None:
+            self._lock = DatabaseLock(database.path)
+
     def _on_document_changed(self, change: Change, origin: object) -> None:
         if change & Change.NODES:  # another database, with what its list held when it was opened
             self._on_disk, self._stamp = self._document.shared_removals, None
+            self.close()
+            try:
+                self._hold()
+            except DatabaseLocked:
+                self.noted.emit(texts.DATABASE_OPEN_ELSEWHERE)
+            except UserFacingError:
+                pass  # its folder cannot be written, which is said when something is removed
             self.refresh()
         elif change & Change.CURATION and origin is not self:
             self._write()

@@ -39,6 +39,10 @@ VERSION_KEPT = "Kept as version “{name}”"
 WORKING_VERSION = "As it was before comparing"
 NO_VERSION_YET = "Keep a version first (File ▸ Versions ▸ Keep version…); then this key goes back and forth."
 ONE_VERSION_ONLY = "This is the only version; change something, then this key goes back and forth."
+DATABASE_OPEN_ELSEWHERE = (
+    "The database is open in another window, which keeps its list of removed nodes; "
+    "what is removed here is removed for this project only."
+)
 CURATION_ONLY_HERE = "The list of removed nodes cannot be written; they are removed for this project only."
 NEW_PROJECT = "&New project"
 OPEN_PROJECT = "&Open project…"
