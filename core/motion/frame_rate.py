@@ -41,9 +41,11 @@ def rate_of_times(times_s: np.ndarray, path: Path, lines: np.ndarray) -> float:
     if off.max() > _UNEVEN_FRAMES:
         line = lines[(off > _UNEVEN_FRAMES).argmax()]
         raise UserFacingError(f"'{path}', line {line}: the time does not advance evenly.", "Give every frame its row.")
-    # times are rounded to a microsecond at best; the rate that was meant is a whole number or a television rate
+    # times are rounded to milli- or microseconds; the rate that was meant is a whole number or a television rate
+    milliseconds = (times_s - times_s[0]) * 1e3
+    rounding_s = 1e-3 if np.abs(milliseconds - np.rint(milliseconds)).max() < 1e-4 else 1.5e-6
     for meant in (round(rate_hz), round(rate_hz * 1.001) / 1.001):
-        if abs(rate_hz - meant) <= rate_hz * max(1e-6, 1.5e-6 / duration_s):
+        if abs(rate_hz - meant) <= rate_hz * max(1e-6, rounding_s / duration_s):
             rate_hz = meant
             break
     return check_rate_hz(float(rate_hz), path)

@@ -83,12 +83,8 @@ def write_live_link_face(path: str | Path, track: BlendshapeTrack) -> None:
     table = np.column_stack([*(columns.get(name, absent) for name in ARKIT_UNITS), rotations])
     heads = [name[:1].upper() + name[1:] for name in (*ARKIT_UNITS, *HEAD_AND_EYES)]
     base = max(1, round(track.rate_hz))
-    match = _TIMECODE.fullmatch(track.start_timecode)
-    start_s = (
-        sum(float(part or 0) * unit for part, unit in zip(match.groups()[:4], (3600, 60, 1, 1 / base)))
-        if match
-        else 0.0
-    )
+    whole, frame, fraction = _code_parts(track.start_timecode) or (0.0, 0.0, 0.0)
+    start_s = whole + fraction if frame is None else whole + (frame + fraction) / base
     with swapped_in(path) as beside, beside.open("w", encoding="utf-8", newline="") as file:
         file.write(",".join(["Timecode", "BlendShapeCount", *heads]) + "\n")
         for f, row in enumerate(table):
@@ -107,11 +103,18 @@ def _timecode(time_s: float, base: int) -> str:
 
 
 def _parts(text: DelimitedText, row: int) -> tuple[float, float | None, float]:
-    """Whole seconds, frame number (None: the code has none) and the fraction behind the point."""
     code = text.lines[row].split(text.delimiter, 1)[0].strip(' "')
+    parts = _code_parts(code)
+    if parts is None:
+        raise UserFacingError(f"'{text.path}', line {row + 1}: '{code[:30]}' is no timecode.")
+    return parts
+
+
+def _code_parts(code: str) -> tuple[float, float | None, float] | None:
+    """Whole seconds, frame number (None: the code has none) and the fraction behind the point; None for no timecode."""
     match = _TIMECODE.fullmatch(code)
     if match is None:
-        raise UserFacingError(f"'{text.path}', line {row + 1}: '{code[:30]}' is no timecode.")
+        return None
     hours, minutes, seconds, frame, fraction = match.groups()
     whole = float(hours) * 3600 + float(minutes) * 60 + float(seconds)
     return whole, None if frame is None else float(frame), float(f"0.{fraction or 0}")
@@ -176,7 +179,7 @@ def _on_even_steps(
     rate_hz = (len(times_s) - 1) / float(times_s[-1] - times_s[0])
     at = (times_s - times_s[0]) * rate_hz
     if np.abs(at - np.arange(len(at))).max() <= _EVEN_FRAMES:
-        meant = min((round(rate_hz), round(rate_hz * 1.001) / 1.001), key=lambda hz: abs(hz - rate_hz))
+        meant = min((named_hz or 0.0, round(rate_hz), round(rate_hz * 1.001) / 1.001), key=lambda hz: abs(hz - rate_hz))
         exact = abs(meant - rate_hz) * (times_s[-1] - times_s[0]) < 2 * _EVEN_FRAMES and meant > 0
         return values, check_rate_hz(float(meant if exact else rate_hz), path), notes
     near = min((*_RATES_HZ, named_hz or _RATES_HZ[0]), key=lambda hz: abs(hz * step_s - 1))

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from core.motion.length_units import MM_PER_UNIT
 
 _LONGEST_HEAD = 200
-_UNIT = r"(?:[ _]*[\[(]?(?P<unit>mm|cm|m|in|px)[\])]?)?"
+_UNIT = r"(?:(?:[ _]+|[ _]*[\[(])(?P<unit>mm|cm|m|in|px)[\])]?)?"
 _AXIS_LAST = re.compile(
     rf"(?P<name>.*?)[ _.:\-\[(]+(?:(?:pos(?:ition)?|translate|trans|t)[ _.]?)?(?P<axis>[xyzXYZ])[\])]?{_UNIT}"
 )
 _AXIS_CAPITAL = re.compile(rf"(?P<name>.*[^XYZ ])(?P<axis>[XYZ]){_UNIT}")
 _AXIS_FIRST = re.compile(rf"(?P<axis>[xyzXYZ])[ _.:\-]?(?P<name>\d+){_UNIT}")
 _AXIS_FIRST_NAMED = re.compile(rf"(?P<axis>[xyzXYZ])[ _.:\-](?P<name>.+?){_UNIT}")
+_BARE_AXIS = re.compile(rf"(?P<axis>[xyzXYZ])\d*{_UNIT}")
 # columns that come in three axes and are no places
 _NO_PLACE = re.compile(
     r"(?:^|[ _.:\-]|(?<=[a-z]))(?:rot|rotation|rotate|scale|vel|velocity|acc|quat|angle)$", re.IGNORECASE
@@ -50,10 +51,12 @@ def axis_column(head: str) -> AxisColumn | None:
     return None
 
 
-def bare_axis(head: str) -> int | None:
-    """Return 0, 1 or 2 for a head that is X, Y or Z and nothing else (a number or a unit may follow); else None."""
-    match = re.fullmatch(rf"(?P<axis>[xyzXYZ])\d*{_UNIT}", head)
-    return "xyz".index(match["axis"].lower()) if match else None
+def bare_axis(head: str) -> AxisColumn | None:
+    """Read a head that is X, Y or Z and nothing else (a number or a unit may follow); its name is ""."""
+    match = _BARE_AXIS.fullmatch(head) if len(head) <= _LONGEST_HEAD else None
+    if match is None:
+        return None
+    return AxisColumn("", "xyz".index(match["axis"].lower()), match["axis"].isupper(), match["unit"] or "")
 
 
 def time_factor(head: str) -> float | None:

@@ -66,6 +66,10 @@ def _in_mm(
     span_mm = median_span(positions)
     if len(names) >= 10 and 0 < span_mm < _SMALLEST_FACE_MM:
         notes.append(f"The markers span only {span_mm:.3g} mm: is the unit right?")
+    if layout.camera:
+        positions[..., 1:] *= -1.0
+        names, _ = landmark_names(names)
+        notes.append("The camera's axes were turned: y is up, z towards the camera.")
     return MotionTrack(positions, names, rate_hz, notes=tuple(notes))
 
 

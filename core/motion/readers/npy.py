@@ -82,7 +82,10 @@ def parse_npy(raw: bytes) -> np.ndarray:
     match = _HEADER.fullmatch(raw[at : at + length].decode("latin-1"))
     if match is None:
         raise ValueError("it holds something other than numbers and texts")
-    dtype = np.dtype(match["descr"])
+    try:
+        dtype = np.dtype(match["descr"])
+    except TypeError as error:
+        raise ValueError("it holds numbers of no known kind") from error
     # Python 2 wrote long numbers with an L
     shape = tuple(int(n) for n in match["shape"].replace("L", "").replace(" ", "").split(",") if n)
     count = math.prod(shape)

@@ -33,6 +33,7 @@ class TableLayout:
     capital : heads were X, Y, Z rather than x, y, z
     zero_is_missing : the tool writes 0, 0, 0 for a marker that it did not see
     own : the workstation's own layout, in millimetres
+    camera : axes are a camera's: x right in the picture, y down, z away
     """
 
     points: dict[str, tuple[int, ...]]
@@ -48,6 +49,7 @@ class TableLayout:
     capital: bool = False
     zero_is_missing: bool = True
     own: bool = False
+    camera: bool = False
     notes: tuple[str, ...] = field(default=())
 
 
@@ -81,13 +83,20 @@ def _section(text: DelimitedText) -> int:
 
 
 def _of_head(text: DelimitedText, above: list, row: int, cells: list[str]) -> TableLayout | None:
-    axes = [bare_axis(cell) for cell in cells]
+    bare = [bare_axis(cell) for cell in cells]
+    axes = [None if column is None else column.axis for column in bare]
+    # x0, y0, z0, x1 are names of their own where no line above them names the points
+    first = next((c for c, axis in enumerate(axes) if axis is not None), 0)
+    unnamed = not any(any(line[first : first + 3]) for _, line in above)
+    if unnamed and sum(axis is not None for axis in axes) > 3:
+        bare, axes = [], [None] * len(cells)
     if sum(axis is not None for axis in axes) >= 2:
         names = {cell.lower(): c for c, cell in enumerate(cells)}
         named = next((names[name] for name in _POINT_NAMES & set(names)), None)
         if named is not None and axes.count(0) == axes.count(1) == 1:
             return _one_row_a_point(text, row, cells, axes, named)
-        return _several_rows(text, above, row, cells, axes)
+        unit = next((column.unit for column in bare if column and column.unit), None)
+        return _several_rows(text, above, row, cells, axes, unit)
     columns = [axis_column(cell) for cell in cells]
     if sum(column is not None for column in columns) >= 2:
         return _one_row(text, above, row, cells, columns)
@@ -95,7 +104,8 @@ def _of_head(text: DelimitedText, above: list, row: int, cells: list[str]) -> Ta
 
 
 def _one_row(text: DelimitedText, above: list, row: int, cells: list[str], columns: list) -> TableLayout:
-    if {"confidence", "success"} <= {cell.lower() for cell in cells}:
+    openface = {"confidence", "success"} <= {cell.lower() for cell in cells}
+    if openface:
         # OpenFace: gaze, pose and the eyes' contours are no points of the skin
         columns = [column if column and column.name.isdigit() else None for column in columns]
     found: dict[tuple[str, bool], dict[int, int]] = {}
@@ -125,11 +135,13 @@ def _one_row(text: DelimitedText, above: list, row: int, cells: list[str], colum
     own = tuple(cells[:2]) == _OWN_HEADER and cells[2:] == [f"{n}_{a}" for n in points for a in "xyz"]
     return _finished(
         text, above, row, cells, points, used,
-        unit=units[0] if units else None, capital=next(iter(chosen))[1], own=own,
+        unit=units[0] if units else None, capital=next(iter(chosen))[1], own=own, camera=openface,
     )  # fmt: skip
 
 
-def _several_rows(text: DelimitedText, above: list, row: int, cells: list[str], axes: list) -> TableLayout:
+def _several_rows(
+    text: DelimitedText, above: list, row: int, cells: list[str], axes: list, unit: str | None
+) -> TableLayout:
     kept = _motive_columns(above, axes)
     names = _names_above(text, above, row, axes, kept)
     points: dict[str, list[int]] = {}
@@ -148,7 +160,12 @@ def _several_rows(text: DelimitedText, above: list, row: int, cells: list[str], 
         raise UserFacingError(f"'{text.path}', line {row + 1}: the marker '{(short or '')[:60]}' lacks an axis.")
     places = {name: tuple(columns) for name, columns in points.items()}
     used = {c for c, axis in enumerate(axes) if axis is not None}
-    return _finished(text, above, row, cells, places, used, capital=True)
+    # the heads of frames and times may stand in the line of names, with a unit below
+    lines = [cells, *(line for _, line in reversed(above))]
+    heads = list(cells)
+    for c in set(range(len(cells))) - used:
+        heads[c] = next((line[c] for line in lines if c < len(line) and _counts(line[c])), "")
+    return _finished(text, above, row, heads, places, used, unit=unit, capital=True)
 
 
 def _names_above(text: DelimitedText, above: list, row: int, axes: list, kept: set[int]) -> list[str]:
@@ -207,6 +224,7 @@ def _qualisys(text: DelimitedText, above: list, row: int, cells: list[str]) -> T
 def _finished(
     text: DelimitedText, above: list, row: int, cells: list[str], points: dict, used: set[int], *,
     unit: str | None = None, capital: bool = False, point: int | None = None, own: bool = False,
+    camera: bool = False,
 ) -> TableLayout:  # fmt: skip
     others = [c for c in range(len(cells)) if c not in used]
     times = [c for c in others if time_factor(cells[c]) is not None]
@@ -231,7 +249,7 @@ def _finished(
     return TableLayout(
         points, first, len(cells), times[0] if times else None, time_factor(cells[times[0]]) if times else 1.0,
         frames[0] if frames else None, valid, point, _stated_rate(above), unit or _stated_unit(above), capital,
-        zero_is_missing=not own, own=own, notes=notes,
+        zero_is_missing=not own, own=own, camera=camera, notes=notes,
     )  # fmt: skip
 
 
@@ -263,6 +281,10 @@ def _pairs(cells: Sequence[str]) -> list[tuple[str, str]]:
     plain = [cell.lower().strip(" #:=") for cell in cells]
     inner = [part for cell in plain for sep in ":=" if sep in cell for part in [cell.split(sep, 1)]]
     return [*pairwise(plain), *((a.strip(), b.strip()) for a, b in inner)]
+
+
+def _counts(head: str) -> bool:
+    return time_factor(head) is not None or is_frame(head)
 
 
 def _numeric(cell: str) -> bool:
