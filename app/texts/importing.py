@@ -142,3 +142,43 @@ STATE_HEAD_SHORT = "{n} rigid markers"
 MM = "{mm:.2f} mm"
 TAKE = "Sentence:"
 TAKE_TIP = "The sentence that is plotted (Page Up, Page Down)"
+
+# Mend
+MEND = "Mend"
+MEND_HINT = (
+    "What will be filled, cut and swapped back, worst sentence first. Choose a row to see the marker before and after."
+)
+LONGEST_GAP = "Fill gaps up to"
+LONGEST_GAP_TIP = "Longer gaps stay open, and nothing is built from their frames"
+LOOK_FOR_FAULTS = "Look for spikes and swaps"
+LOOK_FOR_FAULTS_TIP = "Switch it off for points of a face model that was fitted to video; they cannot swap"
+LEAST_SPIKE = "Spikes from"
+LEAST_SPIKE_TIP = "A smaller excursion is left alone"
+LEAST_DEVIATIONS = "and"
+LEAST_DEVIATIONS_TIP = "Robust standard deviations above the marker's usual step at which a jump counts"
+DEVIATIONS = " × usual"
+MENDING = "Looking for gaps, spikes and swaps"
+MEND_COLUMNS = ("Sentence", "Swaps", "Spikes", "Gaps filled", "Too long", "Samples")
+MEND_COLUMN_TIPS = (
+    "The sentence; the worst stand first",
+    "Spans in which two markers had changed places",
+    "Excursions that are cut out and filled again",
+    "Gaps that are filled",
+    "Gaps that are longer than the limit and stay open",
+    "Marker samples that are changed or stay missing",
+)
+EVENT_COLUMNS = ("What", "Marker", "From", "Lasts", "Size")
+EVENT_KINDS = {"swap": "swap", "spike": "spike", "gap": "gap, filled", "long gap": "gap, open"}
+EVENT_OTHER = "{marker} and {other}"
+SECONDS = "{s:.2f} s"
+MILLISECONDS = "{ms:.0f} ms"
+MEND_MARKER = "Marker:"
+MEND_MARKER_TIP = "The marker that is plotted"
+MEND_AXIS_TIP = "Axis of the capture"
+MEND_PLACE = "Place (mm)"
+MEND_LEGEND_BEFORE = "as captured"
+MEND_LEGEND_AFTER = "as imported"
+MEND_NOTHING = "Nothing is to be mended in “{name}”."
+MEND_TOTAL = "{gaps} gaps filled · {long} too long · {spikes} spikes · {swaps} swaps"
+STATE_SOUND = "nothing to mend"
+STATE_MEND = "{n} mends, {long} open"

@@ -25,6 +25,7 @@ from app.panels.importing.draft import ImportDraft
 from app.panels.importing.files_page import FilesPage
 from app.panels.importing.head_page import HeadPage
 from app.panels.importing.markers_page import MarkersPage
+from app.panels.importing.mend_page import MendPage
 from app.panels.importing.page import Page
 from app.panels.message_bar import MessageBar
 from app.panels.status import StatusLine
@@ -70,7 +71,8 @@ class ImportWindow(QWidget):
         self.files = FilesPage(self.draft)
         self.markers = MarkersPage(self.draft, self.authoring)
         self.head = HeadPage(self.draft)
-        return (self.files, self.markers, self.head)
+        self.mend = MendPage(self.draft)
+        return (self.files, self.markers, self.head, self.mend)
 
     def _arrange(self) -> None:
         t = theme()
