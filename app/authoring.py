@@ -8,6 +8,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 
 from app import texts
+from app.backends import Backends
 from app.curating import Curating
 from app.editing import Editing
 from app.film import FilmComposer
@@ -53,12 +54,14 @@ class Authoring(Editing):
         self._rigs = Rigs(self.document, self.jobs, self)
         self._solving = Solving(self.document, self.jobs, self)
         self.curating = Curating(self.document, self)
+        self._backends = Backends(self.document, self)
         self.document.changed.connect(self._on_document_changed)
         self.curating.failed.connect(self.failed)
         self.curating.noted.connect(self.noted)
         self._solving.solved.connect(self._on_solved)
         self._rigs.changed.connect(self._on_rig_changed)
         self._rigs.failed.connect(self.failed)
+        self._backends.changed.connect(self.backend_changed)
         self.film.saved.connect(lambda path: self.noted.emit(texts.FILM_SAVED.format(path=path)))
 
     # Opening
@@ -77,7 +80,7 @@ class Authoring(Editing):
     def take_engine(self, opened: OpenedDatabase) -> None:
         """Make a database that was opened one that can be searched."""
         self._solving.add_engine(opened.engine)
-        self.backend_changed.emit(opened.engine.kernels.report.backend, opened.backend)
+        self._backends.add(opened)
         if opened.trouble:
             self.failed.emit(*opened.trouble)
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import shutil
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app import texts
@@ -46,6 +48,7 @@ class FilmComposer(QObject):
         self._head_moves = True
         self._folder = tempfile.TemporaryDirectory(prefix="efase-films-", ignore_cleanup_errors=True)
         self._n_films = 0
+        self._made_of: FilmRequest | None = None
         self._soon = QTimer(self, singleShot=True, interval=_COMPOSE_AFTER_MS)
         self._soon.timeout.connect(self._compose_unasked)
 
@@ -71,7 +74,11 @@ class FilmComposer(QObject):
         self.renew()
 
     def renew(self) -> None:
-        """The motion is another one: drop the film, and compose soon."""
+        """Drop a film that no longer shows what is asked for, and compose soon; the same is not made again."""
+        wanted = self._request()
+        is_there = self.path is not None or self._jobs.is_running("film")
+        if is_there and wanted is not None and _shows(self._made_of, wanted):
+            return
         self._jobs.cancel("film")
         if self.path is not None:
             self.path.unlink(missing_ok=True)
@@ -82,21 +89,27 @@ class FilmComposer(QObject):
 
     def compose(self) -> None:
         """Compose the film of the motion on show, if there is none yet."""
-        answer, speech = self._document.answer, self._document.speech
-        if answer is None or speech is None or self.path is not None or self._jobs.is_running("film"):
+        request = self._request()
+        if request is None or self.path is not None or self._jobs.is_running("film"):
             return
         if self._jobs.is_running("face") or self._jobs.is_running("search"):
             self._soon.start()
             return
         self._n_films += 1
-        path = Path(self._folder.name) / f"synthesis-{self._n_films}.avi"
-        width, height = _SIZE_PX
+        self._made_of = replace(request, path=Path(self._folder.name) / f"synthesis-{self._n_films}.avi")
+        self._jobs.start("film", texts.COMPOSING, self._made_of, compose_apart, self._on_composed, self._on_failed)
+
+    def _request(self) -> FilmRequest | None:
+        """What the film on show is to be made of, without a path; None while there is no motion."""
+        document = self._document
+        speech = document.speech
+        if document.answer is None or speech is None:
+            return None
         style = "face" if self._rig is not None else "markers"
         settings = VideoSettings(
-            FRAME_RATES[self.fps_name], width, height, style, head=self._head_moves, gaze=self._head_moves
+            FRAME_RATES[self.fps_name], *_SIZE_PX, style, head=self._head_moves, gaze=self._head_moves
         )
-        request = FilmRequest(self._document.motion, speech.audio, speech.transcript, self._rig, settings, path)
-        self._jobs.start("film", texts.COMPOSING, request, compose_apart, self._on_composed, self._on_failed)
+        return FilmRequest(document.motion, speech.audio, speech.transcript, self._rig, settings, Path())
 
     def _compose_unasked(self) -> None:
         speech = self._document.speech
@@ -126,3 +139,14 @@ def _copy(request: tuple[Path, Path], _progress: Progress) -> None:
     source, target = request
     with swapped_in(target) as beside:
         shutil.copyfile(source, beside)
+
+
+def _shows(made_of: FilmRequest, wanted: FilmRequest) -> bool:
+    """Whether a film of one request is, frame for frame, that of the other."""
+    one, other = made_of.motion, wanted.motion
+    same_moves = one.rate_hz == other.rate_hz and one.markers is other.markers
+    return (
+        same_moves and made_of.audio is wanted.audio and made_of.transcript == wanted.transcript
+        and made_of.rig is wanted.rig and made_of.settings == wanted.settings
+        and np.array_equal(one.positions, other.positions)
+    )  # fmt: skip
