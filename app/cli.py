@@ -9,7 +9,8 @@ import typer
 from typer.core import TyperGroup
 
 from app.terminal import clear_failures, end_on_signals, show_log
-from app.verbs import databases, measuring, motion, speech
+from app.verbs import databases, importing, measuring, motion, pipeline, speech
+from app.verbs.animeme import train
 from app.verbs.bench import bench
 from app.verbs.growth import db
 from core.errors import UserFacingError
@@ -39,11 +40,15 @@ app = typer.Typer(
 )  # fmt: skip
 
 app.add_typer(bench, name="bench")
+app.add_typer(train, name="train")
 app.add_typer(db, name="db")
 for verb in (motion.demo, databases.build, databases.info, databases.tune, speech.align, motion.synth,
              measuring.evaluate):  # fmt: skip
     app.command()(verb)
 app.command("export")(motion.export_project)
+app.command("import")(importing.import_captures)
+app.command()(pipeline.lipsync)
+app.command()(pipeline.curves)
 
 
 def main() -> None:

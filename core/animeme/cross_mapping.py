@@ -46,7 +46,9 @@ def units_at_markers(face: Face, markers: MarkerSet) -> tuple[tuple[str, ...], n
     """Return the units of ``face`` by name, and how they move the actor's markers: shape (U, K, 3), the actor's mm.
 
     Where the eyes look is no affair of markers: what ``eyeLook`` units do to the lids would be taken for lids that
-    move, so these units are said to move nothing, and stay at 0. Raises `UserFacingError` when the markers cannot be laid on the face.
+    move, so these units are said to move nothing, and stay at 0.
+
+    Raises `UserFacingError` when the markers cannot be laid on the face.
     """
     vertices = bind(face, markers)
     scale = scale_to(face, vertices, markers)

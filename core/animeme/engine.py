@@ -35,7 +35,7 @@ class AnimemeAnswer:
 class AnimemeEngine:
     """Dominated animemes of a database's principal components.
 
-    All markers, not the lips alone, are synthesised: what a phoneme does not move (lids, brows) comes out near its mean.
+    All markers, not the lips alone, are synthesised: what phonemes do not move (lids, brows) comes out near its mean.
     The model is learnt on first use and kept in the cache, by the content of the database. Slots that ask for a mix of
     emotions get that mix of their animemes.
 
@@ -76,9 +76,7 @@ class AnimemeEngine:
         return AnimemeAnswer(MarkerMotion(positions, database.rate_hz, database.markers), curves)
 
 
-def component_animemes(
-    database: MotionDatabase, form: AnimemeForm = BEST, progress: Progress = SILENT
-) -> AnimemeModel:
+def component_animemes(database: MotionDatabase, form: AnimemeForm = BEST, progress: Progress = SILENT) -> AnimemeModel:
     """Return the animemes of a database's components, from the cache if they were learnt before.
 
     An error of one component counts as that of another, for all are in mm of marker motion.

@@ -29,7 +29,7 @@ class AnimemeForm:
     degree: int = 4
     is_normalised: bool = True
     spread: str = "time"
-    edge: float = 1.5
+    edge: float = 1.25
     neighbours: int = 8
     context_degree: int = 3
     duration_degree: int = 1

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from core.animeme.damping import START
 from core.errors import UserFacingError
 from core.face.face_file import UNREADABLE, read_arrays, write_arrays
 
@@ -21,7 +22,7 @@ class WidthState:
     """
 
     log_widths: np.ndarray
-    damping: float = 1e-2
+    damping: float = START
     losses: tuple[float, ...] = ()
     is_done: bool = False
 

@@ -1,8 +1,8 @@
 """What the animeme of one occurrence is added up from: its class, its phoneme, its neighbours, how long, how felt.
 
-The paper gives each phoneme one polynomial (equation 6). Here that polynomial is a sum over levels, each with a ridge of
-its own: a phoneme that is rare stays near its viseme class, which may be said often, and a neighbour or an emotion only
-changes what the recordings show changed. Every level is linear in its coefficients, so all are solved for at once.
+The paper gives each phoneme one polynomial (equation 6). Here that polynomial is a sum over levels, each with a ridge
+of its own: a phoneme that is rare stays near its viseme class, which may be said often, and a neighbour or an emotion
+only changes what the recordings show changed. Every level is linear in its coefficients, so all are solved for at once.
 """
 
 from __future__ import annotations

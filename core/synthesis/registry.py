@@ -10,6 +10,10 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Protocol
 
+from core.animeme.engine import AnimemeEngine
+from core.animeme.form import COHEN_MASSARO_NORMALISED
+from core.animeme.form import PRINTED as PRINTED_ANIMEMES
+from core.animeme.rival_engines import MmmEngine
 from core.errors import UserFacingError
 from core.evaluation.engines.phone_means import PhoneMeans
 from core.evaluation.engines.random_nodes import RandomNodes
@@ -68,6 +72,15 @@ ENGINES: Mapping[str, EngineKind] = MappingProxyType({
                           lambda database, kernels: PhoneMeans(database)),
     "random": _rival("Random nodes", "Any captured node of the right phone.",
                      lambda database, kernels: RandomNodes(make_engine(PRINTED, database, kernels))),
+    "cohen-massaro": _rival("Cohen and Massaro", "Constant targets under normalised dominance functions.",
+                            lambda database, kernels: AnimemeEngine(database, COHEN_MASSARO_NORMALISED)),
+    "mmm": _rival("MMM", "Gaussians by phoneme, and the smoothest path through them.",
+                  lambda database, kernels: MmmEngine(database)),
+    "animeme-printed": _rival("Animemes, as printed", "Dominated animemes as the paper of 2012 prints them.",
+                              lambda database, kernels: AnimemeEngine(database, PRINTED_ANIMEMES)),
+    "animeme": EngineKind("Dominated animemes", "A shape over time for every phoneme, learnt from the captures, "
+                          "and how far each rules its neighbours; smooth, and at once.",
+                          lambda database, *_: AnimemeEngine(database)),
     PRINTED: _search(PRINTED, "Search, as printed", "The constrained search as the paper of 2008 prints it: one path, "
                      "no context, straight silences."),
     "search-single": _search("search-single", "Search, best path alone", "The motion of the best path alone: every "
