@@ -101,6 +101,23 @@ def bench_maps(db: Database = None, json: Json = False) -> None:
     _tell(answer, map_bench.as_table, json)
 
 
+@bench.command("size")
+def bench_size(
+    database: Annotated[Path, typer.Argument(metavar="DB", help="Where the large database is, or is to be built.")],
+    db: Database = None,
+    frames: Annotated[int, typer.Option(min=1000, help="Frames; the paper's 135 minutes when absent.")] = 972_000,
+    keep: Annotated[bool, typer.Option("--use", help="Only open and use it; it was built before.")] = False,
+    json: Json = False,
+) -> None:
+    """Measure a large database, made of a small one by repetition with variation: building, opening, browsing."""
+    from app import size_bench
+
+    with progress_bar("bench") as progress:
+        source = None if keep else _open(db, progress)
+        answer = size_bench.bench_size(source, frames, database, progress.part(0.1, 1.0))
+    _tell(answer, size_bench.as_table, json)
+
+
 @bench.command("suspicion")
 def bench_suspicion(db: Database = None, json: Json = False) -> None:
     """Measure how well suspicion finds the demo corpus's planted faults, beside chance and plain distance."""
