@@ -9,7 +9,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 
-from app.pictures import STYLES, FaceRig, frames
+from app.control_export import write_motion_controls
+from app.controlled_face import drawable
+from app.pictures import STYLES, Drawable, frames
 from core.document.parts import FaceChoice
 from core.errors import UserFacingError
 from core.face.default_face import FaceUnavailable
@@ -19,6 +21,8 @@ from core.media.image_sequence import numbered, write_images
 from core.media.picture import read_picture
 from core.media.swap_in import check_target
 from core.media.video import FRAME_RATES, n_video_frames, write_video
+from core.pipeline.control_files import SUFFIXES as CONTROL_SUFFIXES
+from core.pipeline.control_files import check_control_suffix, control_suffix
 from core.progress import SILENT, Progress
 from core.speech.loudness import levels_db
 from core.speech.transcript import Transcript
@@ -29,7 +33,7 @@ VIDEO_SUFFIXES = (".avi", ".mp4")
 MARKER_SUFFIXES = (".csv", ".c3d")
 TRANSCRIPT_SUFFIX = ".textgrid"
 DRAWN_SUFFIXES = (*VIDEO_SUFFIXES, IMAGE_SUFFIX)
-SUFFIXES = (*VIDEO_SUFFIXES, IMAGE_SUFFIX, *MARKER_SUFFIXES, ".TextGrid")
+SUFFIXES = (*VIDEO_SUFFIXES, IMAGE_SUFFIX, *MARKER_SUFFIXES, ".TextGrid", *CONTROL_SUFFIXES)
 _COLOUR = re.compile("#[0-9a-fA-F]{6}")
 _PIXELS = re.compile("[0-9]{2,4}")
 
@@ -105,7 +109,10 @@ def check_outputs(paths: list[Path]) -> None:
     """Raise `UserFacingError` before any work when an output could not be written."""
     for path in paths:
         suffix = path.suffix.lower()
-        if suffix not in (*DRAWN_SUFFIXES, *MARKER_SUFFIXES, TRANSCRIPT_SUFFIX):
+        controls = control_suffix(path)
+        if controls is not None:
+            check_control_suffix(controls)
+        elif suffix not in (*DRAWN_SUFFIXES, *MARKER_SUFFIXES, TRANSCRIPT_SUFFIX):
             raise UserFacingError(f"'{path}' has no suffix that can be written.", f"Known are {', '.join(SUFFIXES)}.")
         check_target(numbered(path, 0) if suffix == IMAGE_SUFFIX else path)
 
@@ -113,7 +120,7 @@ def check_outputs(paths: list[Path]) -> None:
 def export(
     motion: MarkerMotion,
     audio: Audio,
-    rig: FaceRig | None,
+    rig: Drawable | None,
     path: Path,
     settings: VideoSettings,
     progress: Progress = SILENT,
@@ -151,7 +158,7 @@ def _frame_span(settings: VideoSettings, n_frames: int) -> tuple[int, int]:
 
 
 def _write_pictures(
-    motion: MarkerMotion, audio: Audio, rig: FaceRig | None, path: Path, settings: VideoSettings, progress: Progress,
+    motion: MarkerMotion, audio: Audio, rig: Drawable | None, path: Path, settings: VideoSettings, progress: Progress,
     transcript: Transcript | None, first: int, stop: int,
 ) -> None:  # fmt: skip
     tracks = PoseTracks()
@@ -190,21 +197,35 @@ def write_outputs(
     video: VideoSettings,
     face: FaceChoice,
     progress: Progress = SILENT,
+    key_poses: Path | None = None,
+    csv_is_live_link: bool = False,
 ) -> list[str]:
     """Write ``motion`` to every one of ``outputs`` (see `export`); return sentences to warn with.
 
-    Where the face cannot be had, pictures show the markers, and that is one of them.
+    key_poses : an artist's poses of key lip shapes on a rig that the face names
+    csv_is_live_link : a plain .csv holds the weights of ARKit's units, else the markers
+
+    Files of controls (`core.pipeline.control_files`) are sampled at the video's frame rate too. Where the face cannot
+    be had, pictures show the markers, and that is one of the warnings.
     """
+    controls = [path for path in outputs if control_suffix(path, csv_is_live_link)]
+    others = [path for path in outputs if path not in controls]
     rig, warnings = None, []
-    if video.style != "markers" and is_drawn(outputs):
-        marker_file = None if face.marker_file is None else Path(face.marker_file)
+    if video.style != "markers" and is_drawn(others):
         try:
-            rig = FaceRig.of(face.name, motion.markers, marker_file, progress.part(0.0, 0.1))
+            rig = drawable(face, motion.markers, key_poses, progress.part(0.0, 0.1))
         except FaceUnavailable as error:
             warnings.append(str(error))
             video = replace(video, style="markers")
-    for i, path in enumerate(outputs):
-        stage = progress.part(0.1 + 0.9 * i / len(outputs), 0.1 + 0.9 * (i + 1) / len(outputs))
+    if controls:
+        first, stop = _frame_span(video, n_video_frames(audio.duration_s, video.fps))
+        sampled = motion.at_rate(video.fps, stop)
+        sampled = replace(sampled, positions=sampled.positions[first:])
+        warnings += write_motion_controls(
+            controls, sampled, face, key_poses, video.start_frame + first, csv_is_live_link
+        )
+    for i, path in enumerate(others):
+        stage = progress.part(0.1 + 0.9 * i / len(others), 0.1 + 0.9 * (i + 1) / len(others))
         export(motion, audio, rig, path, video, stage, transcript)
     return warnings
 

@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
-from core.animeme.controls import ControlTrack
 from core.errors import UserFacingError
 from core.face.eyelids import Eyelids
 from core.face.face import Face
@@ -19,12 +19,24 @@ from core.face.moving_parts import MovingParts
 from core.face.skinning import MarkerSkin
 from core.motion.marker_set import MarkerSet
 from core.progress import SILENT, Progress
-from core.rig.rig import Rig, fitted
 from core.synthesis.marker_motion import MarkerMotion
 from core.synthesis.pose_tracks import PoseTracks
 
 DEFAULT_FACE = "default"
 STYLES = ("face", "shaded", "wireframe", "markers")
+
+
+class Drawable(Protocol):
+    """One face or several that follow marker motion."""
+
+    @property
+    def faces(self) -> tuple[Face, ...]:
+        """The faces, side by side in the picture."""
+
+    def poses(
+        self, motion: MarkerMotion, tracks: PoseTracks, first: int, stop: int
+    ) -> Iterator[tuple[np.ndarray, ...]]:
+        """Yield the vertices of every face, mm, for the frames ``first`` to ``stop``, the last one not included."""
 
 
 @dataclass(frozen=True)
@@ -92,44 +104,23 @@ class FaceRig:
             self.lips.apply(moved)
         return self._parts.place(moved, head, gaze, tongue)
 
-
-@dataclass(frozen=True)
-class ControlledFace:
-    """A face that controls move, by its own shapes; lips : what keeps them from sliding through each other."""
-
-    rig: Rig
-    lips: LipContact | None
-
-    @classmethod
-    def of(cls, rig: Rig) -> ControlledFace:
-        """Prepare ``rig`` for pictures."""
-        return cls(rig, LipContact.of(rig.face))
-
-    @cached_property
-    def _parts(self) -> MovingParts:
-        return MovingParts(self.rig.face)
+    @property
+    def faces(self) -> tuple[Face, ...]:
+        """See `Drawable`."""
+        return (self.face,)
 
     def poses(
-        self, track: ControlTrack, tracks: PoseTracks | None = None, span: tuple[int, int] | None = None
-    ) -> Iterator[np.ndarray]:
-        """Yield the vertices frame by frame, mm, float32, shape (n_vertices, 3).
-
-        track : in any controls, matched by name (see `core.rig.rig.fitted`)
-        tracks, span : as for `frames`
-        """
-        tracks = tracks or PoseTracks()
-        values = fitted(self.rig, track)[0].values
-        first, stop = span or (0, len(values))
+        self, motion: MarkerMotion, tracks: PoseTracks, first: int, stop: int
+    ) -> Iterator[tuple[np.ndarray, ...]]:
+        """See `Drawable`."""
+        displacements = motion.displacements
         for f in range(first, stop):
-            moved = self.rig.moved(values[f])
-            if self.lips is not None:
-                self.lips.apply(moved)
-            yield self._parts.place(moved, **tracks.at(f))
+            yield (self.pose(displacements[f], **tracks.at(f)),)
 
 
 def frames(
     motion: MarkerMotion,
-    rig: FaceRig | None,
+    rig: Drawable | None,
     style: str,
     width: int,
     height: int,
@@ -154,10 +145,8 @@ def frames(
         return
     if rig is None:
         raise UserFacingError("There is no face to draw.", "Draw the markers, with --style markers.")
-    tracks = tracks or PoseTracks()
-    displacements = motion.displacements
-    poses = (rig.pose(displacements[f], **tracks.at(f)) for f in range(first, stop))
-    yield from face_pictures([rig.face], zip(poses), stop - first, style, width, height, progress, texture, background)
+    poses = rig.poses(motion, tracks or PoseTracks(), first, stop)
+    yield from face_pictures(rig.faces, poses, stop - first, style, width, height, progress, texture, background)
 
 
 def face_pictures(

@@ -37,6 +37,8 @@ class SynthesisJob:
     engine: str = DEFAULT_ENGINE
     face: str = "default"
     marker_file: Path | None = None
+    key_poses: Path | None = None
+    csv_is_live_link: bool = False
     backend: str = "auto"
     pins: tuple[str, ...] = ()
     weights: str = "tuned"
@@ -76,7 +78,8 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
     warnings += answer.warnings
     face = FaceChoice(job.face, None if job.marker_file is None else str(job.marker_file))
     stage = progress.part(0.5, 1.0)
-    warnings += write_outputs(job.outputs, answer.motion, speech.audio, speech.transcript, job.video, face, stage)
+    warnings += write_outputs(job.outputs, answer.motion, speech.audio, speech.transcript, job.video, face, stage,
+                              job.key_poses, job.csv_is_live_link)  # fmt: skip
     seconds = {
         "align": aligned_s, "search": search_s, "synthesis": synthesis_s, "render": time.perf_counter() - began,
     }  # fmt: skip
@@ -96,8 +99,8 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
 
 
 def _check_inputs(job: SynthesisJob) -> None:
-    given = (job.audio, job.text, job.phones, job.database, job.emotions, job.marker_file, job.lexicon, job.face,
-             job.video.texture)  # fmt: skip
+    given = (job.audio, job.text, job.phones, job.database, job.emotions, job.marker_file, job.key_poses, job.lexicon,
+             job.face, job.video.texture)  # fmt: skip
     read = {os.path.realpath(path) for path in given if path is not None}
     if job.marker_file is not None and not job.marker_file.is_file():
         raise UserFacingError(f"There is no marker file '{job.marker_file}'.")

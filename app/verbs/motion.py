@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from app.terminal import note, print_json, progress_bar, warn
-from app.verbs.options import OUTPUTS, Background, Database, Json, Lexicon, Span, Strict
+from app.verbs.options import OUTPUTS, Background, Database, Json, KeyPoses, Lexicon, Span, Strict
 
 
 def demo(
@@ -38,8 +38,11 @@ def synth(
     emotion: Annotated[str | None, typer.Option(help="neutral, happiness, anger or sadness.")] = None,
     emotions: Annotated[Path | None, typer.Option(help="Text lines `start end emotion [intensity]`.")] = None,
     engine: Annotated[str, typer.Option(help="search, search-single (one path) or search-paper (printed).")] = "search",
-    face: Annotated[str, typer.Option(help="default, ben, rosa, otto, pip, or a mesh: OBJ, PLY, glTF.")] = "default",
+    face: Annotated[
+        str, typer.Option(help="default, ben, rosa, otto, pip, cast (all), or a mesh: OBJ, PLY, glTF.")
+    ] = "default",
     markers: Annotated[Path | None, typer.Option(help="CSV `marker,vertex` for a face of your own.")] = None,
+    poses: KeyPoses = None,
     backend: Annotated[str, typer.Option(help="auto, numpy, opencl or glsl.")] = "auto",
     pin: Annotated[list[str] | None, typer.Option(metavar="SLOT=NODE", help="Tie a motion node to a slot.")] = None,
     weights: Annotated[str, typer.Option(help="tuned (the database's), default (untuned), or a JSON file.")] = "tuned",
@@ -62,7 +65,8 @@ def synth(
 
     job = SynthesisJob(
         audio=audio, outputs=tuple(output), text=text, phones=phones, database=db, emotion=emotion, emotions=emotions,
-        engine=engine, face=face, marker_file=markers, backend=backend, pins=tuple(pin or ()),
+        engine=engine, face=face, marker_file=markers, key_poses=poses, csv_is_live_link=engine == "animeme",
+        backend=backend, pins=tuple(pin or ()),
         weights=weights,
         video=VideoSettings(frame_rate(fps), *video_size(size), style, start_frame, head, gaze, texture,
                             None if background is None else background_colour(background),

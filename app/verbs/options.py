@@ -7,7 +7,13 @@ from typing import Annotated
 
 import typer
 
-OUTPUTS = ".avi, .mp4, .png (numbered), .c3d, .csv or .TextGrid; repeat for more."
+OUTPUTS = (
+    ".avi, .mp4, .png (numbered), .c3d, .csv, .TextGrid, or for rigs .livelink.csv, .curves.csv, .json, .glb, .usd; "
+    "repeat for more."
+)
+KeyPoses = Annotated[
+    Path | None, typer.Option("--poses", help="Key lip shapes as an artist posed them on the rig (JSON).")
+]
 Background = Annotated[str | None, typer.Option(help="Colour behind the face, #rrggbb.")]
 Span = Annotated[str | None, typer.Option("--range", metavar="START-END", help="Only this part, in seconds.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
