@@ -55,7 +55,7 @@ def work_on(plan: ImportPlan, sentence: SentencePlan) -> WorkedSentence:
     duration_s = audio.duration_s if audio is not None else len(positions) / track.rate_hz
     transcript, text, alignment = _speech(plan, sentence, audio, duration_s)
     rigid = [names.index(name) for name in plan.rigid if name in names]
-    mended = mend(positions, names, track.rate_hz, plan.mending, rigid, _model_of(plan.like, names, track))
+    mended = mend(positions, names, track.rate_hz, plan.mending, rigid, model_of(plan.like, names, track))
     lips = [names.index(plan.landmarks[lip]) if plan.landmarks.get(lip) in names else None
             for lip in ("upper_lip", "lower_lip")]  # fmt: skip
     offset = None
@@ -124,7 +124,8 @@ def _confidence(audio: Audio | None, transcript: Transcript, alignment: str) -> 
     return round(listen_again(audio, transcript).of_sentence, 3)
 
 
-def _model_of(like: str | None, names: tuple[str, ...], track: MotionTrack) -> PoseModel | None:
+def model_of(like: str | None, names: tuple[str, ...], track: MotionTrack) -> PoseModel | None:
+    """Return the poses that fill the gaps of a short take, learnt from the database ``like``; None: the take's own."""
     if like is None or len(track.positions) >= _OWN_POSES_S * track.rate_hz:
         return None
     from core.motion.database import open_database
