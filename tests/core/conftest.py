@@ -24,10 +24,14 @@ _INTRUDERS = (b"nan", b"inf", b"-1", b"\xc2\xb2", b"\0", b'"', b"9" * 5000, b"1e
               b"\xd9\xa3", b"-", b"#", b"[" * 40)  # fmt: skip
 
 
-def _damaged(raw: bytes, n: int) -> Iterator[bytes]:
+def _damaged(raw: bytes, n: int, others: Sequence[bytes] = ()) -> Iterator[bytes]:
     for seed in range(n):
         chance = random.Random(seed)
         data = bytearray(raw)
+        if others and chance.random() < 0.25:
+            # the tail of another file on the head of this one
+            other = chance.choice(others)
+            data[chance.randrange(len(data)) :] = other[chance.randrange(len(other)) :]
         if chance.random() < 0.15:
             del data[chance.randrange(len(data)) :]
         for _ in range(chance.choice((1, 1, 2, 8, 40))):
@@ -48,17 +52,18 @@ def _damaged(raw: bytes, n: int) -> Iterator[bytes]:
 
 
 @pytest.fixture
-def survives_damage(tmp_path) -> Callable[[Path, Callable[[Path], object], int], int]:
+def survives_damage(tmp_path) -> Callable[..., int]:
     """Return a function that reads ``n`` damaged copies of a file and counts the refusals.
 
-    Each copy must be read, or refused in one sentence that names it; any other failure goes through.
+    Each copy must be read, or refused in one sentence that names it; any other failure goes through. ``others`` are
+    files whose tails take the place of some copies' own.
     """
 
-    def read_all(path: Path, read: Callable[[Path], object], n: int) -> int:
+    def read_all(path: Path, read: Callable[[Path], object], n: int, others: Sequence[bytes] = ()) -> int:
         raw = path.read_bytes()
         copy = tmp_path / f"damaged{path.suffix}"
         refused = 0
-        for data in _damaged(raw, n):
+        for data in _damaged(raw, n, others):
             copy.write_bytes(data)
             try:
                 read(copy)
