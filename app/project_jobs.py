@@ -10,6 +10,7 @@ from app import texts
 from app.loading import OpenedDatabase, open_motion_database
 from core.document.content import ProjectContent
 from core.document.parts import DatabaseReference
+from core.document.pins_met import what_pins_met
 from core.document.project_file import SUFFIX, ProjectFile, ReadOnlyProject, read_project
 from core.document.project_lock import ProjectLocked
 from core.errors import UserFacingError
@@ -128,12 +129,6 @@ def find_database(request: tuple[DatabaseReference, Path], progress: Progress) -
 
 def database_differences(content: ProjectContent, opened: OpenedDatabase) -> str:
     """Return a sentence about a database that is not what the project was made with, or nothing."""
-    nodes = opened.database.nodes
-    names = {nodes.name(row) for row in range(len(nodes))}
-    lost = sorted({*content.pins.values(), *content.locks.values()} - names)
     is_other = content.database is not None and content.database.content_hash != opened.database.content_hash
     sentences = [texts.DATABASE_CHANGED.format(name=opened.database.name)] if is_other else []
-    if lost:
-        shown = ", ".join(lost[:6]) + (" …" if len(lost) > 6 else "")
-        sentences.append(texts.PINS_WITHOUT_NODES.format(n=len(lost), nodes=shown))
-    return " ".join(sentences)
+    return " ".join(sentences + what_pins_met(content, opened.database))

@@ -29,6 +29,7 @@ from app.settings import forget_project, last_project, remember_project, window_
 from core.document.change import ANSWER, Change
 from core.document.content import ProjectContent
 from core.document.document import EMPTY
+from core.document.pins_met import NodeContent
 from core.document.project_file import SUFFIX, ProjectFile
 from core.document.project_writer import ProjectWriter
 from core.errors import UserFacingError
@@ -65,6 +66,7 @@ class ProjectKeeper(QObject):
         self.authoring = authoring
         self.file: ProjectWriter | None = None
         self._others: Mapping[str, Any] = EMPTY
+        self._tied: Mapping[str, NodeContent] = EMPTY
         self._settings = window_settings()
         self._voice = _Voice()
         self._voice.written.connect(self._on_written, Qt.ConnectionType.QueuedConnection)
@@ -126,7 +128,7 @@ class ProjectKeeper(QObject):
         if is_new:
             content = ProjectContent(face=document.face, database=document.database_reference)
         same_database = database is not None and content.database == document.database_reference
-        self.file, self._others = ProjectWriter(project.file), content.others
+        self.file, self._others, self._tied = ProjectWriter(project.file), content.others, content.tied
         authoring.undo_stack.clear()
         authoring.jobs.cancel("speech")
         authoring.jobs.cancel("database")
@@ -178,7 +180,8 @@ class ProjectKeeper(QObject):
 
     def _shown(self) -> tuple[ProjectContent, Audio | None]:
         document = self.authoring.document
-        content = ProjectContent.of(document, self.authoring.view, self._others)
+        content = ProjectContent.of(document, self.authoring.view, self._others, self._tied)
+        self._tied = content.tied
         return content, None if document.speech is None else document.speech.audio
 
     def _on_written(self, error: BaseException | None, tells: bool) -> None:

@@ -101,7 +101,8 @@ class Versions(QObject):
         except UserFacingError:
             return False
         now = ProjectContent.of(self._authoring.document)
-        return replace(then, view=View(), others={}).to_json() == replace(now, view=View(), others={}).to_json()
+        bare = {"view": View(), "others": {}, "tied": {}}
+        return replace(then, **bare).to_json() == replace(now, **bare).to_json()
 
     def _pair_with(self, name: str) -> None:
         if self.pair is None or name not in self.pair:

@@ -23,6 +23,7 @@ from core.document.parts import (
     Speech,
     View,
 )
+from core.document.pins_met import NodeContent
 from core.document.view_state import ViewState
 from core.errors import UserFacingError
 from core.media.audio import Audio
@@ -39,6 +40,7 @@ from core.synthesis.registry import DEFAULT_ENGINE
 class ProjectContent:
     """All of a project but its sound; see `core.document.document.Document` for the names.
 
+    tied : what the nodes of pins and locks held when they were last seen, by name; see `core.document.pins_met`
     others : what a newer minor version wrote and this one does not know; it is kept
     """
 
@@ -57,12 +59,19 @@ class ProjectContent:
     output: OutputSettings = DEFAULT_OUTPUT
     polish: Polish = NO_POLISH
     database: DatabaseReference | None = None
+    tied: Mapping[str, NodeContent] = field(default_factory=lambda: EMPTY)
     view: View = field(default_factory=View)
     others: Mapping[str, Any] = field(default_factory=lambda: EMPTY)
 
     @classmethod
-    def of(cls, document: Document, view: ViewState | None = None, others: Mapping[str, Any] = EMPTY) -> ProjectContent:
-        """Return what ``document`` holds now."""
+    def of(
+        cls,
+        document: Document,
+        view: ViewState | None = None,
+        others: Mapping[str, Any] = EMPTY,
+        tied: Mapping[str, NodeContent] = EMPTY,
+    ) -> ProjectContent:
+        """Return what ``document`` holds now; ``tied`` is what was known before of nodes that its database lacks."""
         speech = document.speech
         path = None if speech is None or speech.audio.path is None else str(speech.audio.path)
         return cls(
@@ -73,7 +82,7 @@ class ProjectContent:
             removed_here=document.removed_here, kept=document.kept, engine=document.engine,
             weights=document.weights, face=document.face,
             reference_video=document.reference_video, output=document.output, polish=document.polish,
-            database=document.database_reference,
+            database=document.database_reference, tied=_tied(document, tied),
             view=View() if view is None else View(view.slot, view.playhead_s, view.map_phone), others=others,
         )  # fmt: skip
 
@@ -115,6 +124,7 @@ class ProjectContent:
             "polish": {"articulation": self.polish.articulation, "expression": self.polish.expression,
                        "curves": {region: list(keys) for region, keys in sorted(self.polish.curves.items())}},
             "database": None if self.database is None else asdict(self.database),
+            "tied": {name: asdict(node) for name, node in sorted(self.tied.items())},
             "view": asdict(self.view),
         }, allow_nan=False)  # fmt: skip
 
@@ -161,6 +171,14 @@ class ProjectContent:
             database=door.optional(entries.pop("database", None), lambda e: DatabaseReference(
                 *(door.name_text(e[key]) for key in ("name", "content_hash")),
                 door.optional(e.get("path"), door.name_text))),
+            tied=door.tied(entries.pop("tied", {})),
             view=door.view_entry(entries.pop("view", {}), n_slots),
             others=MappingProxyType(entries),
         )  # fmt: skip
+
+
+def _tied(document: Document, before: Mapping[str, NodeContent]) -> Mapping[str, NodeContent]:
+    database, names = document.database, {*document.pins.values(), *document.locks.values()}
+    here = names & document.node_names if database is not None and names else frozenset()
+    tied = {name: node for name, node in before.items() if name in names}
+    return MappingProxyType({**tied, **{name: NodeContent.of(database, name) for name in here}})

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Any
 
 from core.document.parts import DEFAULT_OUTPUT, OutputSettings, View
+from core.document.pins_met import N_LOOKS, NodeContent
 from core.media.audio import LONGEST_S
 from core.media.video import FRAME_RATES
 from core.motion.curation import Removal
@@ -19,6 +20,7 @@ from core.synthesis.polish import REGIONS, STRONGEST, Polish
 _LONGEST_NAME, _LONGEST_TEXT = 1 << 15, 1 << 22
 _MOST_UTTERANCES, MOST_SPANS, MOST_NODES = 100_000, 100_000, 1_000_000
 _HIGHEST_FRAME = 10**9
+_FARTHEST_MM = 1e9
 FARTHEST_S = 1e9
 _ROUNDING_S = 1e-6
 
@@ -117,6 +119,17 @@ def ties(entries: Any, n_slots: int) -> Mapping[int, str]:
     """Return pins or locks of slots that there are."""
     ties = {whole(slot, 0, n_slots - 1): name_text(node) for slot, node in listed(entries, _MOST_UTTERANCES)}
     return MappingProxyType(ties)
+
+
+def tied(entries: Any) -> Mapping[str, NodeContent]:
+    """Return what tied nodes held."""
+    require(len(of_type(entries, dict)) <= 2 * _MOST_UTTERANCES, "too many nodes are tied")
+    return MappingProxyType({
+        name_text(name): NodeContent(
+            name_text(e["phone"]), whole(e["n_frames"], 0, _HIGHEST_FRAME),
+            tuple(number(look, -_FARTHEST_MM, _FARTHEST_MM) for look in listed(e["looks_mm"], 2 * N_LOOKS)))
+        for name, e in entries.items()
+    })  # fmt: skip
 
 
 def removals(entries: Any) -> Mapping[str, Removal]:
