@@ -12,7 +12,8 @@ from scipy.ndimage import gaussian_filter1d
 def resample(values: np.ndarray, rate_hz: float, new_rate_hz: float, n_frames: int) -> np.ndarray:
     """Sample a track at another rate by a natural cubic spline.
 
-    Going down, a Gaussian takes out what the new rate cannot carry (-6 dB at half the new rate). Frame f stands at
+    Going down, a Gaussian takes out what the new rate cannot carry: of a wave of f Hz it leaves 2 ** -(f / c) ** 2,
+    c being half the new rate (-6 dB there; from 240 to 120 Hz, 98.8 % of a wave of 8 Hz). Frame f stands at
     f / rate; before the first and after the last sample the track holds still.
 
     values : shape (n_old, ...), finite

@@ -72,6 +72,19 @@ def test_ezc3d_reads_our_file_as_we_do(tmp_path, suffix):
     np.testing.assert_allclose(points[:3].transpose(2, 1, 0), motion(), atol=MM)
 
 
+@pytest.mark.parametrize("take", ["animface-mocap/Eyebrows.c3d", "animface-mocap/Nose.c3d", "grid-s1/examples"])
+def test_we_read_real_files_as_ezc3d_does(shared_data, take):
+    import ezc3d
+
+    path = shared_data(take.split("/")[0]) / take.split("/")[1]
+    path = path if path.is_file() else min(path.glob("*.c3d"))
+    theirs = ezc3d.c3d(str(path))
+    positions, names, rate_hz = read_motion(path)
+    np.testing.assert_allclose(positions, theirs["data"]["points"][:3].transpose(2, 1, 0), atol=MM)
+    assert list(names) == theirs["parameters"]["POINT"]["LABELS"]["value"]
+    assert rate_hz == theirs["parameters"]["POINT"]["RATE"]["value"][0]
+
+
 @pytest.mark.parametrize(("unit", "factor"), [("m", 1000), ("cm", 10), ("mm", 1), ("M", 1000)])
 def test_lengths_in_other_units_become_millimetres(tmp_path, unit, factor):
     path = tmp_path / "m.c3d"

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from scipy.signal import resample_poly
 
 from core.motion.resample import fill_gaps, resample
 
@@ -20,6 +21,47 @@ def test_going_down_takes_out_what_cannot_be_carried():
     gone = resample(np.sin(2 * np.pi * 100 * times), 240, 60, 600)
     assert np.abs(kept).max() > 0.95
     assert np.abs(gone[20:-20]).max() < 0.05
+
+
+def strength(track: np.ndarray, rate_hz: float, at_hz: float) -> float:
+    """Amplitude of a wave in the middle of a track, by its Fourier sum; windowed, for waves that do not fit evenly."""
+    window = np.hanning(len(track))
+    return (
+        2 * abs((track * window * np.exp(-2j * np.pi * at_hz * np.arange(len(track)) / rate_hz)).sum()) / window.sum()
+    )
+
+
+@pytest.mark.parametrize(("rate_hz", "new_hz"), [(240, 120), (240, 100), (240, 60), (120, 30), (120, 25), (60, 25)])
+def test_going_down_every_wave_is_weakened_as_stated_and_none_comes_back_as_another(rate_hz, new_hz):
+    cutoff_hz = new_hz / 2
+    for share in (0.2, 0.5, 0.8, 1.3, 1.6):
+        wave_hz = share * cutoff_hz
+        if wave_hz > 0.8 * rate_hz / 2:
+            continue
+        wave = np.sin(2 * np.pi * wave_hz * np.arange(20 * rate_hz) / rate_hz)
+        seen_at_hz = wave_hz if share < 1 else new_hz - wave_hz
+        left = strength(resample(wave, rate_hz, new_hz, 20 * new_hz), new_hz, seen_at_hz)
+        assert left == pytest.approx(2 ** -(share**2), abs=0.03)
+
+
+@pytest.mark.parametrize(("rate_hz", "new_hz"), [(25, 120), (30, 120), (60, 120), (100, 120), (240, 120)])
+def test_slow_motion_is_what_scipys_polyphase_filter_makes_of_it(rate_hz, new_hz):
+    """Waves up to 4 Hz, as jaws and lips move; scipy's windowed sinc is another method altogether."""
+    times = np.arange(8 * rate_hz) / rate_hz
+    motion = sum(a * np.sin(2 * np.pi * f * times + f) for a, f in ((9.0, 0.7), (5.0, 2.1), (2.0, 4.0)))
+    gcd = np.gcd(rate_hz, new_hz)
+    theirs = resample_poly(motion, new_hz // gcd, rate_hz // gcd, window=("kaiser", 10.0), padtype="line")
+    ours = resample(motion, rate_hz, new_hz, 8 * new_hz)
+    middle = slice(new_hz, 7 * new_hz)
+    assert np.abs(ours[middle] - theirs[middle]).max() < 0.02
+
+
+def test_a_track_of_many_columns_is_each_of_them_alone():
+    tracks = np.random.default_rng(0).normal(size=(240, 4, 3)).cumsum(axis=0)
+    for new_hz in (60, 119.88, 200):
+        together = resample(tracks, 120, new_hz, int(2 * new_hz))
+        alone = resample(tracks[:, 2, 1], 120, new_hz, int(2 * new_hz))
+        np.testing.assert_allclose(together[:, 2, 1], alone, atol=1e-12)
 
 
 @pytest.mark.parametrize("n_old", [1, 2, 3])
