@@ -91,14 +91,26 @@ def bench_align(
 
 
 @bench.command("maps")
-def bench_maps(db: Database = None, json: Json = False) -> None:
-    """Measure how well the Isomap and the PCA map of each phoneme keep neighbours."""
+def bench_maps(
+    db: Database = None,
+    agreement: Annotated[
+        int | None, typer.Option(min=100, help="Compare landmarks and placed frames with the full way on so many.")
+    ] = None,
+    large: Annotated[int | None, typer.Option(min=1000, help="Make one map of so many frames.")] = None,
+    json: Json = False,
+) -> None:
+    """Measure how well the Isomap and the PCA map of each phoneme keep neighbours; how large maps are made."""
     from app import map_bench
 
     with progress_bar("bench") as progress:
-        database = _open(db, progress)
-        answer = map_bench.bench_maps(database, progress.part(0.1, 1.0))
-    _tell(answer, map_bench.as_table, json)
+        database, stage = _open(db, progress), progress.part(0.1, 1.0)
+        if agreement is not None:
+            answer, table = map_bench.bench_agreement(database, agreement, stage), map_bench.agreement_as_table
+        elif large is not None:
+            answer, table = map_bench.bench_large(database, large, stage), map_bench.large_in_words
+        else:
+            answer, table = map_bench.bench_maps(database, stage), map_bench.as_table
+    _tell(answer, table, json)
 
 
 @bench.command("size")

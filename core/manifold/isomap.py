@@ -165,6 +165,14 @@ def _residual_variance(geodesics: np.ndarray, embedding: np.ndarray, landmarks: 
     return float(1.0 - np.corrcoef(flat, true)[0, 1] ** 2)
 
 
+def geodesic_residual(frames: np.ndarray, embedding: np.ndarray, n_neighbors: int = 12) -> float:
+    """Return 1 - r² of geodesic against map distance, over 200 frames and all others, of a map made in any way."""
+    frames = np.asarray(frames, float)
+    graph, _ = joined_neighbour_graph(frames, min(n_neighbors, len(frames) - 1))
+    some = np.linspace(0, len(frames) - 1, min(200, len(frames))).astype(int)
+    return _residual_variance(dijkstra(graph, indices=some), embedding, some)
+
+
 @dataclass(frozen=True)
 class PhonemeMap:
     """The stored map of one phoneme cluster, ready to be shown and picked.
