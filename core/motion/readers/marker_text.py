@@ -47,18 +47,18 @@ def read_marker_text(text: DelimitedText, options: ReadOptions) -> MotionTrack:
     if layout.zero_is_missing:
         _drop_zeros(points, notes)
     has_depth = points.shape[2] == 3
-    if are_landmarks(names, has_depth, layout.capital, layout.unit or options.unit):
+    unit = options.unit or layout.unit or ("mm" if layout.own else None)
+    if are_landmarks(names, has_depth, layout.capital, unit):
         names, note = landmark_names(names)
         pixels, more = in_pixels(points, text.path, options.picture_px)
         return MotionTrack(pixels, names, rate_hz, False, has_depth, notes=(*notes, *note, *more))
-    return _in_mm(text.path, names, points, rate_hz, layout, options, notes)
+    return _in_mm(text.path, names, points, rate_hz, layout, unit, notes)
 
 
 def _in_mm(
-    path: Path, names: tuple[str, ...], points: np.ndarray, rate_hz: float, layout: TableLayout, options: ReadOptions,
+    path: Path, names: tuple[str, ...], points: np.ndarray, rate_hz: float, layout: TableLayout, unit: str | None,
     notes: list[str],
 ) -> MotionTrack:  # fmt: skip
-    unit = options.unit or layout.unit or ("mm" if layout.own else None)
     if unit is None:
         unit, note = unit_by_span(points, path)
         notes.append(note)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from core.errors import UserFacingError
-from core.motion.motion_files import read_motion, read_takes
+from core.motion.motion_files import read_motion, read_takes, write_markers_csv
 from core.motion.motion_track import PictureSizeUnknown, RateUnknown, ReadOptions
 
 SIZE = (1280, 720)
@@ -62,6 +62,12 @@ def test_mediapipe_fractions_become_pixels_of_the_picture(tmp_path, heads, first
     assert not track.true_scale and track.has_depth
     with pytest.raises(UserFacingError, match="not millimetres"):
         read_motion(path, ReadOptions(picture_px=SIZE))
+
+
+def test_our_own_csv_of_numbered_markers_is_millimetres(tmp_path):
+    positions = pixels(30) / 10
+    write_markers_csv(tmp_path / "m.csv", positions, [f"MP{k:03d}" for k in range(30)], 25.0)
+    np.testing.assert_allclose(read_motion(tmp_path / "m.csv")[0], positions, atol=1e-4)
 
 
 def test_one_row_a_point_is_read_too(tmp_path):
