@@ -16,12 +16,10 @@ from core.document.document import Document
 from core.document.edits import FieldEdit
 from core.document.parts import Speech
 from core.errors import UserFacingError
+from core.speech.boundaries import SHORTEST_PHONEME_S, with_boundary
 from core.speech.phoneme import PHONEME_INDEX, PHONEMES
-from core.speech.transcript import PhonemeUtterance, Transcript
+from core.speech.transcript import PhonemeUtterance
 
-SHORTEST_PHONEME_S = 0.01
-# word boundaries this close to a moved phoneme boundary move with it
-_TOGETHER_S = 1e-3
 _ROUNDING_S = 1e-9
 
 
@@ -69,23 +67,10 @@ class MovePhonemeBoundary(_TranscriptEdit):
 
         Raises `UserFacingError` when there is no such boundary or no room.
         """
-        phonemes = list(_phonemes(document, slot, slot + 1))
-        before, after = phonemes[slot : slot + 2]
-        earliest_s, latest_s = before.start_s + SHORTEST_PHONEME_S, after.end_s - SHORTEST_PHONEME_S
-        if earliest_s > latest_s:
-            raise UserFacingError(f"Between /{before.phone}/ and /{after.phone}/ there is no room to move a boundary.")
-        old_s, time_s = before.end_s, float(min(max(time_s, earliest_s), latest_s))
-        phonemes[slot : slot + 2] = replace(before, end_s=time_s), replace(after, start_s=time_s)
-        return cls.of(document, f"Move boundary of /{before.phone}/ and /{after.phone}/", phonemes, lambda p: p,
-                      gesture, _words_with(document.speech.transcript, old_s, time_s))  # fmt: skip
-
-
-def _words_with(transcript: Transcript, old_s: float, new_s: float) -> tuple:
-    def moved(time_s: float) -> float:
-        return new_s if abs(time_s - old_s) <= _TOGETHER_S else time_s
-
-    words = (replace(word, start_s=moved(word.start_s), end_s=moved(word.end_s)) for word in transcript.words)
-    return tuple(new if new.end_s > new.start_s else old for new, old in zip(words, transcript.words))
+        before, after = _phonemes(document, slot, slot + 1)[slot : slot + 2]
+        moved = with_boundary(document.speech.transcript, slot, time_s)
+        return cls.of(document, f"Move boundary of /{before.phone}/ and /{after.phone}/", moved.phonemes, lambda p: p,
+                      gesture, moved.words)  # fmt: skip
 
 
 class RenamePhoneme(_TranscriptEdit):

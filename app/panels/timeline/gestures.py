@@ -10,7 +10,7 @@ from PySide6.QtGui import QPainter, QPen
 from app import texts
 from app.panels.timeline.snapping import snapped
 from app.theme import STEP, colour, small_font, theme
-from core.document.transcript_edits import SHORTEST_PHONEME_S
+from core.speech.boundaries import SHORTEST_PHONEME_S
 
 if TYPE_CHECKING:
     from app.panels.timeline.timeline import Timeline
