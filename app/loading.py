@@ -17,6 +17,7 @@ from core.motion.database import MotionDatabase
 from core.motion.marker_set import MarkerSet
 from core.progress import Progress
 from core.search.engine import SearchEngine
+from core.search.parts_cache import remembered_parts
 from core.speech.emotion import EmotionModifier
 from core.speech.lexicon import parse_lexicon
 
@@ -91,7 +92,7 @@ def open_motion_database(path: Path | None, progress: Progress) -> OpenedDatabas
         removals = CurationList.of(database).read()
     except UserFacingError as error:
         trouble = error.message, error.remedy
-    return OpenedDatabase(database, SearchEngine(database, kernels), backend, removals, trouble)
+    return OpenedDatabase(database, SearchEngine(database, kernels, price=remembered_parts), backend, removals, trouble)
 
 
 def load_demo_sentence(name: str, _progress: Progress) -> KnownSentence:

@@ -18,7 +18,7 @@ from core.search.lip_weight import pose_metric
 from core.search.near_optimal import near_optimal_paths
 from core.search.solve import solve
 from core.search.terms import TransitionTerms
-from core.search.transitions import TransitionCosts
+from core.search.transitions import PriceParts, TransitionCosts, TransitionParts
 from core.search.weights import SearchWeights
 from core.speech.emotion import EMOTIONS, emotion_weights
 from core.speech.phoneme import PHONEME_INDEX
@@ -61,6 +61,7 @@ class SearchEngine:
     exhaustive : look at every node in every slot, on the compute backend, as the paper does; otherwise the relaxation
         finds the same path in a fraction of the time and proves that it is the best
     options : what is done beyond the paper; `core.synthesis.options.PAPER` is the paper's own setting
+    price : makes what is held of the transitions; see `core.search.transitions.TransitionCosts`
     """
 
     name = "search"
@@ -72,6 +73,7 @@ class SearchEngine:
         weights: SearchWeights | None = None,
         exhaustive: bool = False,
         options: SynthesisOptions | None = None,
+        price: PriceParts = TransitionParts.of,
     ) -> None:
         self.database = database
         self.kernels = kernels
@@ -82,7 +84,7 @@ class SearchEngine:
         metric = pose_metric(database.pca, database.markers, self.options.lip_weight)
         compared = self.frames if self.options.lip_weight == 1.0 else self.frames @ metric
         terms = TransitionTerms(compared, database.nodes, database.rate_hz)
-        self.costs = TransitionCosts(terms, self.weights)
+        self.costs = TransitionCosts(terms, self.weights, price=price)
         self.exhaustive = exhaustive
         self._is_prepared = False
 

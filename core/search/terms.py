@@ -48,7 +48,7 @@ class TransitionTerms:
     def __init__(self, frames: np.ndarray, nodes: NodeTable, rate_hz: float) -> None:
         self.nodes = nodes
         self.rate_hz = rate_hz
-        self._frames = frames
+        self.frames = frames
         frames = np.asarray(frames, float)
         last = nodes.stop - 1
         self._first_pose, self._last_pose = frames[nodes.start], frames[last]
@@ -153,7 +153,7 @@ class TransitionTerms:
         poses : the nodes, as `_by_length` groups them
         returns : float64, shape (n_rows, (length - 2) * n_dims)
         """
-        n_dims = self._frames.shape[1]
+        n_dims = self.frames.shape[1]
         vectors = np.empty((sum(len(where) for where, _ in poses), length - 2, n_dims))
         for where, captured in poses:
             bent = (_bending(len(captured), length, fading_out) * self.rate_hz**1.5) @ captured
@@ -167,7 +167,7 @@ class TransitionTerms:
         for n_own in np.unique(own):
             where = np.flatnonzero(own == n_own)
             span = self.nodes.start[rows[where]] + np.arange(n_own)[:, None]
-            groups.append((where, np.asarray(self._frames[span], float).reshape(n_own, -1)))
+            groups.append((where, np.asarray(self.frames[span], float).reshape(n_own, -1)))
         return groups
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -69,15 +70,27 @@ class TransitionParts:
         return matrix
 
 
+PriceParts = Callable[[TransitionTerms, Progress], TransitionParts]
+
+
 class TransitionCosts:
     """TC for the pairs that a search asks for.
 
     Within ``budget_bytes`` the weight-independent parts and the matrix are held (16 n_nodes² bytes); beyond it every
     block is computed when asked for, and nothing is kept.
+
+    price : makes the parts of all pairs, as `TransitionParts.of` does
     """
 
-    def __init__(self, terms: TransitionTerms, weights: SearchWeights, budget_bytes: int = BUDGET_BYTES) -> None:
+    def __init__(
+        self,
+        terms: TransitionTerms,
+        weights: SearchWeights,
+        budget_bytes: int = BUDGET_BYTES,
+        price: PriceParts = TransitionParts.of,
+    ) -> None:
         self.terms = terms
+        self._price = price
         self.weights = weights
         self.is_held = 16 * len(terms.nodes) ** 2 <= budget_bytes
         self._parts: TransitionParts | None = None
@@ -87,7 +100,7 @@ class TransitionCosts:
         """Compute what is held; does nothing the second time, or beyond the budget."""
         if self.is_held and self._matrix is None:
             if self._parts is None:
-                self._parts = TransitionParts.of(self.terms, progress)
+                self._parts = self._price(self.terms, progress)
             self._matrix = self._parts.weighted(self.terms, self.weights)
 
     def reweight(self, weights: SearchWeights) -> None:
