@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from core.errors import UserFacingError
+from core.batch.workers import dask_client
 from core.evaluation.tuning_lattice import TuningLattice
 from core.evaluation.tuning_problem import TuningProblem
 from core.progress import SILENT, Progress
@@ -21,7 +21,6 @@ from core.search.weights import SearchWeights
 
 _UNPROVED = 1.5  # times as much
 Task = tuple[SearchWeights, tuple[int, ...], bool]  # weights, sentences, and whether the answer must be exact
-_CONNECT_S = 10
 _PAGE = 1024  # float32 in a page of memory
 _PORTIONS = 6  # a batch is handed to each core in so many, since some sentences take longer than others
 
@@ -149,20 +148,7 @@ def cluster_workers(problem: TuningProblem, address: str) -> Iterator[TuningWork
     A worker that dies takes nothing along: its sentences go to others, and one that joins later gets the problem too.
     Raises `UserFacingError` when `distributed` is not installed or no scheduler answers.
     """
-    try:
-        from distributed import Client
-    except ImportError as error:
-        raise UserFacingError(
-            "Tuning on a cluster needs the package 'distributed'.", "Install it with `pip install distributed`."
-        ) from error
-    try:
-        client = Client(address, timeout=_CONNECT_S, set_as_default=False)
-    except (OSError, TimeoutError, ValueError) as error:
-        raise UserFacingError(
-            f"No Dask scheduler answers at '{address}'.",
-            "Start one with `dask scheduler`, and workers with `dask worker`.",
-        ) from error
-    with client:
+    with dask_client(address, "Tuning") as client:
         yield Cluster(client, problem)
 
 

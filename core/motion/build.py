@@ -61,8 +61,7 @@ def build_database(
     apart = {name for names in corpus.held_out.values() for name in names}
     held_out = [r for r in corpus.recordings if r.sentence in apart]
     seen = replace(corpus, recordings=[r for r in corpus.recordings if r.sentence not in apart])
-    columns = np.array([corpus.recordings[0].marker_names.index(name) for name in corpus.kept_markers])
-    markers = _marker_set(seen, columns)
+    markers = marker_set_of(seen)
     prepared = prepare_all(seen.recordings, markers, corpus.with_scale, settings, progress.part(0.0, 0.25))
     progress.step(0.25, "fitting principal components")
     pca = MotionPca.fit((p.face[~p.masked] for p in prepared), settings.n_dims)
@@ -142,9 +141,10 @@ def check_corpus(corpus: Corpus, some_seen: bool = True) -> None:
         raise UserFacingError(f"The captures of '{corpus.name}' have no marker '{missing[0]}', which the list keeps.")
 
 
-def _marker_set(corpus: Corpus, columns: np.ndarray) -> MarkerSet:
-    """Return the marker set with its rest pose."""
+def marker_set_of(corpus: Corpus) -> MarkerSet:
+    """Return the marker set with its rest pose; raises `UserFacingError` when no frame shows all markers."""
     names = corpus.kept_markers
+    columns = np.array([corpus.recordings[0].marker_names.index(name) for name in names])
     groups = {g: tuple(m for m in members if m in names) for g, members in corpus.groups.items()}
     landmarks = {anatomy: marker for anatomy, marker in corpus.landmarks.items() if marker in names}
     row = {name: k for k, name in enumerate(names)}
