@@ -15,7 +15,11 @@ from core.motion.marker_set import MarkerSet
 _FARTHEST_PART_MM = 12.0
 # A name counts as much as this many millimetres of nearness.
 _NAME_MM = 20.0
-PARTS = ("jaw", "upper_lip", "lower_lip", "lips")
+# The parts, and the landmarks that belong to each whatever is near.
+_LANDMARKS_OF = {
+    "jaw": ("chin",), "upper_lip": ("upper_lip",), "lower_lip": ("lower_lip",),
+    "lips": ("upper_lip", "lower_lip", "mouth_corner_left", "mouth_corner_right"),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -51,10 +55,11 @@ def propose_parts(names: Sequence[str], pose: np.ndarray, known: MarkerSet) -> M
     distance = np.linalg.norm(placed[seen][:, None] - known.rest[None], axis=2)
     nearest = distance.argmin(axis=1)
     groups = {}
-    for part in PARTS:
+    for part in _LANDMARKS_OF:
         members = set(known.group(part).tolist())
         inside = [names[f] for i, f in enumerate(seen)
                   if nearest[i] in members and distance[i, nearest[i]] <= _FARTHEST_PART_MM]  # fmt: skip
+        inside += [landmarks[a] for a in _LANDMARKS_OF[part] if a in landmarks and landmarks[a] not in inside]
         if inside:
             groups[part] = tuple(inside)
     return MarkerParts(landmarks, groups)

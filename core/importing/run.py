@@ -4,29 +4,32 @@ from __future__ import annotations
 
 import contextlib
 import shutil
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
+from core.batch.workers import Workers, here
 from core.errors import UserFacingError
 from core.folders import cache_dir
 from core.importing.plan import ImportPlan, SentencePlan, check_plan
 from core.importing.report import KEY, ImportReport, SentenceReport
-from core.importing.sentence_work import failed, work_on
+from core.importing.sentence_work import SILENCE, failed, work_on
 from core.importing.shifting import shifted
 from core.importing.sound_offset import OffsetEstimate, pooled_offset
 from core.importing.work_cache import KeptSentence, cache_path, keep, kept
 from core.media.swap_in import check_target
-from core.motion.build import BuildSettings, build_database
+from core.motion.build import BuildSettings, build_database, marker_set_of
 from core.motion.corpus import Corpus
 from core.motion.database import MotionDatabase
-from core.motion.head_space import LONGEST_GAP_S
+from core.motion.head_space import LONGEST_GAP_S, in_head_space
+from core.motion.recording import Recording
 from core.progress import SILENT, Progress
+from core.synthesis.marker_motion import MarkerMotion
 
 # A measured offset that is less sure than this is told, and not taken out.
 SURE = 0.5
-# What one caller runs for many sentences at once: takes calls, yields answers as they come.
-Workers = Callable[[Iterable[tuple[Callable, tuple]]], Iterator]
 
 
 @dataclass(frozen=True)
@@ -41,7 +44,7 @@ def run_import(
     plan: ImportPlan,
     target: Path,
     progress: Progress = SILENT,
-    workers: Workers | None = None,
+    workers: Workers = here,
     folder: Path | None = None,
 ) -> ImportResult:
     """Carry ``plan`` out and write the database to ``target``.
@@ -50,32 +53,82 @@ def run_import(
     started again takes up what was finished. A sentence that fails is left out and told in the report, which lies in
     the database's ``report["import"]``.
 
-    workers : who works on the sentences; this process when absent (see `core.batch.workers`)
+    workers : who works on the sentences; see `core.batch.workers`
     folder : where finished sentences are kept; in the cache when absent
     Raises `UserFacingError` when no sentence succeeds or the target cannot be written.
     """
-    check_plan(plan)
     check_target(Path(target), folders_are_made=True)
     folder = cache_dir() / "import" if folder is None else folder
-    finished, n_resumed = prepare(plan, folder, progress.part(0.0, 0.6), workers)
+    corpus, report = imported_corpus(plan, progress.part(0.0, 0.6), workers, folder)
+    if all(row.alignment == SILENCE for row in report.taken):
+        raise UserFacingError(
+            "None of the takes holds speech, so a database of them would have nothing to search.",
+            "Write their motion as film or markers instead, or give their sound.",
+        )
+    settings = BuildSettings(plan.rate_hz, plan.n_dims, _longest_gap_s(plan))
+    database = build_database(corpus, Path(target), settings, progress.part(0.6, 1.0))
+    forget(plan, folder)
+    return ImportResult(database, report)
+
+
+@dataclass(frozen=True)
+class ImportedMotion:
+    """The takes of an import as motion of their own markers, in head space, ready to drive a face.
+
+    recordings, motions : one a sentence, in the same order
+    """
+
+    recordings: tuple[Recording, ...]
+    motions: tuple[MarkerMotion, ...]
+    report: ImportReport
+
+
+def import_motion(
+    plan: ImportPlan, progress: Progress = SILENT, workers: Workers = here, folder: Path | None = None
+) -> ImportedMotion:
+    """Carry ``plan`` out without a database: for takes that are shown or handed on, with speech or without.
+
+    Raises `UserFacingError` when no sentence succeeds. Parameters as in `run_import`.
+    """
+    folder = cache_dir() / "import" if folder is None else folder
+    corpus, report = imported_corpus(plan, progress, workers, folder)
+    markers = marker_set_of(corpus)
+    motions = []
+    for recording in corpus.recordings:
+        face = in_head_space(recording, markers, plan.with_scale, _longest_gap_s(plan)).face
+        motions.append(MarkerMotion(face.astype(np.float32), recording.rate_hz, markers))
+    forget(plan, folder)
+    return ImportedMotion(tuple(corpus.recordings), tuple(motions), report)
+
+
+def imported_corpus(
+    plan: ImportPlan, progress: Progress, workers: Workers, folder: Path
+) -> tuple[Corpus, ImportReport]:
+    """Work on all sentences and put those that succeeded together; raises `UserFacingError` when none did."""
+    check_plan(plan)
+    finished, n_resumed = prepare(plan, folder, progress, workers)
     sentences, report = offsets_taken_out(plan, finished)
     if not sentences:
         first = report.failures[0]
         raise UserFacingError(f"No sentence could be imported; '{first.sentence}': {first.failure}")
-    database = build_database(
-        corpus_of(plan, sentences, report), Path(target),
-        BuildSettings(plan.rate_hz, plan.n_dims, min(LONGEST_GAP_S, plan.mending.longest_gap_s)),
-        progress.part(0.6, 1.0),
-    )  # fmt: skip
+    return corpus_of(plan, sentences, report), replace(report, n_resumed=n_resumed)
+
+
+def forget(plan: ImportPlan, folder: Path) -> None:
+    """Remove the finished sentences of ``plan`` from ``folder``."""
     for sentence in plan.sentences:
         cache_path(folder, plan, sentence).unlink(missing_ok=True)
     with contextlib.suppress(OSError):
         folder.rmdir()
-    return ImportResult(database, replace(report, n_resumed=n_resumed))
+
+
+def _longest_gap_s(plan: ImportPlan) -> float:
+    """What mending left open is masked; so is nothing that it filled."""
+    return min(LONGEST_GAP_S, plan.mending.longest_gap_s)
 
 
 def prepare(
-    plan: ImportPlan, folder: Path, progress: Progress = SILENT, workers: Workers | None = None
+    plan: ImportPlan, folder: Path, progress: Progress = SILENT, workers: Workers = here
 ) -> tuple[list[KeptSentence | SentenceReport], int]:
     """Work on all sentences that ``folder`` does not hold yet.
 
@@ -93,7 +146,7 @@ def prepare(
     failures: dict[int, str] = {}
     bare = replace(plan, sentences=())
     calls = ((_work, (bare, plan.sentences[i], str(paths[i]), i)) for i in todo)
-    for n, (i, failure) in enumerate((workers or _here)(calls)):
+    for n, (i, failure) in enumerate(workers(calls)):
         if failure:
             failures[i] = failure
         progress.step((n + 1) / len(todo), f"{plan.sentences[i].name} read and mended")
@@ -102,11 +155,6 @@ def prepare(
         found = None if i in failures else kept(path, sentence)
         finished.append(failed(sentence, failures.get(i, "Its finished work was lost.")) if found is None else found)
     return finished, len(plan.sentences) - len(todo)
-
-
-def _here(calls: Iterable[tuple[Callable, tuple]]) -> Iterator:
-    for work, arguments in calls:
-        yield work(*arguments)
 
 
 def _work(plan: ImportPlan, sentence: SentencePlan, path: str, number: int) -> tuple[int, str]:

@@ -36,7 +36,8 @@ def propose_steady(names: Sequence[str], takes: Sequence[np.ndarray], midline: S
     agree best and span a triangle, markers join one by one, the one that adds least first.
 
     takes : each of shape (n_frames, n_markers, 3), mm, NaN where missing
-    midline : names that are fit to be the origin (nose); any rigid marker when none of them is rigid
+    midline : names that are fit to be the origin (bridge of the nose), the fittest first; when none of them is rigid,
+        the steadiest of all is taken
     """
     frames = np.concatenate([np.asarray(t, float)[:: max(1, len(t) * len(takes) // _MOST_FRAMES)] for t in takes])
     unrest, length = _pairwise(frames)
@@ -53,7 +54,7 @@ def propose_steady(names: Sequence[str], takes: Sequence[np.ndarray], midline: S
     residual = rigid_residual_mm(frames, chosen)
     order = np.argsort(residual, kind="stable")
     rigid = tuple(names[chosen[i]] for i in order)
-    fit = [name for name in rigid if name in midline] or list(rigid)
+    fit = [name for name in midline if name in rigid] or list(rigid)
     return SteadyMarkers(rigid, fit[0], tuple(float(residual[i]) for i in order))
 
 
