@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
 
 from core.errors import UserFacingError
 from core.motion.readers.column_names import axis_column, bare_axis, is_frame, is_length, time_factor
-from core.motion.readers.delimited import HEAD_LINES, DelimitedText, first_repeated, is_number
+from core.motion.readers.delimited import HEAD_LINES, DelimitedText, first_repeated
+from core.motion.readers.tool_heads import marker_columns, names_above, numeric_cell, stated_rate, stated_unit
 
-_RATES = ("export frame rate", "frame rate", "framerate", "capture frame rate", "frequency", "datarate", "data rate",
-          "sample rate", "fps", "rate")  # fmt: skip
-_UNITS = ("length units", "units", "unit")
-_POINT_NAMES = {"landmark", "marker", "point", "id", "name", "index", "landmark_id", "landmark_index", "landmark id",
-                "marker name", "point_id", "keypoint"}  # fmt: skip
-# Motive's kinds of columns that are places of markers; the first that a file has is read
-_MOTIVE_MARKERS = (("marker",), ("rigid body marker", "bone marker"))
+# of several such columns the first in this list counts
+_POINT_NAMES = ("marker", "marker name", "landmark", "landmark_index", "landmark_id", "landmark id", "keypoint",
+                "point", "point_id", "name", "index", "id")  # fmt: skip
 _OTHER_UNITS = {"s", "ms", "sec", "seconds", "px", "deg", "rad", "-", "frame", "frames", "hz", "#"}
 _OWN_HEADER = ("frame", "time_s")
 
@@ -92,7 +87,7 @@ def _of_head(text: DelimitedText, above: list, row: int, cells: list[str]) -> Ta
         bare, axes = [], [None] * len(cells)
     if sum(axis is not None for axis in axes) >= 2:
         names = {cell.lower(): c for c, cell in enumerate(cells)}
-        named = next((names[name] for name in _POINT_NAMES & set(names)), None)
+        named = next((names[name] for name in _POINT_NAMES if name in names), None)
         if named is not None and axes.count(0) == axes.count(1) == 1:
             return _one_row_a_point(text, row, cells, axes, named)
         unit = next((column.unit for column in bare if column and column.unit), None)
@@ -142,8 +137,8 @@ def _one_row(text: DelimitedText, above: list, row: int, cells: list[str], colum
 def _several_rows(
     text: DelimitedText, above: list, row: int, cells: list[str], axes: list, unit: str | None
 ) -> TableLayout:
-    kept = _motive_columns(above, axes)
-    names = _names_above(text, above, row, axes, kept)
+    kept = marker_columns(above, axes)
+    names = names_above(text, above, row, axes, kept)
     points: dict[str, list[int]] = {}
     for c in sorted(kept):
         axis = axes[c]
@@ -168,40 +163,6 @@ def _several_rows(
     return _finished(text, above, row, heads, places, used, unit=unit, capital=True)
 
 
-def _names_above(text: DelimitedText, above: list, row: int, axes: list, kept: set[int]) -> list[str]:
-    """One name a column: from Motive's row ``Name``, else the nearest row above; it stands over x or all three axes."""
-    first = next(c for c, axis in enumerate(axes) if axis is not None)
-    rows = [cells for _, cells in above if len(cells) > 1 and cells[1].lower() == "name"]
-    rows += [cells for _, cells in reversed(above) if any(cells[first : first + 3])]
-    if not rows:
-        raise UserFacingError(f"'{text.path}', line {row + 1}: no row above the axes names the markers.")
-    names, current = [], ""
-    for c, axis in enumerate(axes):
-        cell = rows[0][c] if c < len(rows[0]) else ""
-        current = cell or ("" if axis == 0 else current)
-        names.append(current)
-    nameless = next((c for c in sorted(kept) if not names[c]), None)
-    if nameless is not None:
-        raise UserFacingError(f"'{text.path}', line {row + 1}: column {nameless + 1} belongs to no marker.")
-    return names
-
-
-def _motive_columns(above: list, axes: list) -> set[int]:
-    """The columns that are places of markers; all, where no row says what each is."""
-    kinds = next((cells for _, cells in above if sum(cell.lower() == "position" for cell in cells) >= 2), None)
-    types = next((cells for _, cells in above if "marker" in {cell.lower() for cell in cells[2:]}
-                  or "rigid body marker" in {cell.lower() for cell in cells[2:]}), None)  # fmt: skip
-    columns = {c for c, axis in enumerate(axes) if axis is not None}
-    if kinds is not None:
-        columns = {c for c in columns if c < len(kinds) and kinds[c].lower() == "position"}
-    if types is not None:
-        for wanted in _MOTIVE_MARKERS:
-            chosen = {c for c in columns if c < len(types) and types[c].lower() in wanted}
-            if chosen:
-                return chosen
-    return columns
-
-
 def _one_row_a_point(text: DelimitedText, row: int, cells: list[str], axes: list, named: int) -> TableLayout:
     places = tuple(axes.index(axis) for axis in range(3) if axis in axes)
     return _finished(text, [], row, cells, {"": places}, {*places, named}, point=named)
@@ -211,14 +172,14 @@ def _qualisys(text: DelimitedText, above: list, row: int, cells: list[str]) -> T
     """Qualisys Track Manager: key and value a line, names in a line of their own, often no heads of columns."""
     names = [cell for cell in cells[1:] if cell]
     first = row + 1
-    while first < len(text.lines) and (text.is_blank(first) or not _numeric(text.cells(first)[0])):
+    while first < len(text.lines) and (text.is_blank(first) or not numeric_cell(text.cells(first)[0])):
         first += 1
     heads = next((text.cells(r) for r in range(row + 1, first) if text.cells(r)[0].lower() == "frame"), [])
     start = 2 if heads else 0
     if not names or first_repeated(names) is not None:
         raise UserFacingError(f"'{text.path}', line {row + 1}: markers have no names, or the same one.")
     points = {name: tuple(range(start + 3 * k, start + 3 * k + 3)) for k, name in enumerate(names)}
-    return TableLayout(points, first, start + 3 * len(names), rate_hz=_stated_rate(above), unit="mm", capital=True)
+    return TableLayout(points, first, start + 3 * len(names), rate_hz=stated_rate(above), unit="mm", capital=True)
 
 
 def _finished(
@@ -248,44 +209,10 @@ def _finished(
         notes = (f"Columns that are no points were left out: {listed}.",)
     return TableLayout(
         points, first, len(cells), times[0] if times else None, time_factor(cells[times[0]]) if times else 1.0,
-        frames[0] if frames else None, valid, point, _stated_rate(above), unit or _stated_unit(above), capital,
+        frames[0] if frames else None, valid, point, stated_rate(above), unit or stated_unit(above), capital,
         zero_is_missing=not own, own=own, camera=camera, notes=notes,
     )  # fmt: skip
 
 
-def _stated_rate(above: list) -> float | None:
-    """A rate from the lines above the heads: a key with its number behind it, or Nexus's number alone in its line."""
-    for key in _RATES:
-        for _, cells in above:
-            for name, value in _pairs(cells):
-                if name == key and _numeric(value) and float(value.replace(",", ".")) > 0:
-                    return float(value.replace(",", "."))
-    for _, cells in above:
-        filled = [cell for cell in cells if cell]
-        if len(filled) == 1 and _numeric(filled[0]) and float(filled[0].replace(",", ".")) > 0:
-            return float(filled[0].replace(",", "."))
-    return None
-
-
-def _stated_unit(above: list) -> str | None:
-    for key in _UNITS:
-        for _, cells in above:
-            for name, value in _pairs(cells):
-                if name == key and is_length(value):
-                    return value
-    return None
-
-
-def _pairs(cells: Sequence[str]) -> list[tuple[str, str]]:
-    """Keys with what follows them; also ``# fps: 60`` within one cell."""
-    plain = [cell.lower().strip(" #:=") for cell in cells]
-    inner = [part for cell in plain for sep in ":=" if sep in cell for part in [cell.split(sep, 1)]]
-    return [*pairwise(plain), *((a.strip(), b.strip()) for a, b in inner)]
-
-
 def _counts(head: str) -> bool:
     return time_factor(head) is not None or is_frame(head)
-
-
-def _numeric(cell: str) -> bool:
-    return is_number(cell.replace(",", "."))
