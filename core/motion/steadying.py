@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
+from scipy.sparse import csr_matrix
 from scipy.signal import savgol_filter
 
 from core.motion.database import CapturedSentence
@@ -48,10 +49,9 @@ def without_offsets(frames: np.ndarray, sentences: Iterable[CapturedSentence], r
     spoken = _spoken(sentences, len(frames), rate_hz)
     kinds, kind = np.unique(spoken, return_inverse=True)
     count = np.bincount(kind, minlength=len(kinds))[:, None]
+    of_kind = csr_matrix((np.ones(len(kind)), (kind, np.arange(len(kind)))), shape=(len(kinds), len(kind)))
     for _ in range(2):
-        means = np.zeros((len(kinds), frames.shape[1]))
-        np.add.at(means, kind, steady)
-        means /= count
+        means = (of_kind @ steady) / count
         for sentence in sentences:
             span = slice(sentence.start_frame, sentence.stop_frame)
             steady[span] -= (steady[span] - means[kind[span]]).mean(axis=0)
