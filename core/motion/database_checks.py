@@ -106,7 +106,7 @@ def check_motion(rate_hz: float, markers: MarkerSet, pca: MotionPca, frames: np.
 
 def _are_motion(array: np.ndarray) -> bool:
     # least and greatest, without the copies that a comparison of millions makes; NaN is neither
-    return np.size(array) == 0 or bool(-_LARGEST <= np.min(array) and np.max(array) <= _LARGEST)
+    return np.size(array) == 0 or bool(np.min(array) >= -_LARGEST and np.max(array) <= _LARGEST)
 
 
 def check_nodes(nodes: NodeTable, n_frames: int) -> None:

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-from scipy.sparse import csr_matrix
 from scipy.signal import savgol_filter
+from scipy.sparse import csr_matrix
 
 from core.motion.database import CapturedSentence
 from core.motion.resample import frame_bounds
