@@ -256,7 +256,7 @@ def _tables(n: int):
 
 
 @pytest.mark.parametrize("name", TEXT)
-@pytest.mark.parametrize("n", [SHORT, pytest.param(LONG // 4, marks=pytest.mark.prove)])
+@pytest.mark.parametrize("n", [SHORT, pytest.param(LONG // 10, marks=pytest.mark.prove)])
 def test_tables_of_known_words_in_any_order_are_read_or_refused(tmp_path, name, n):
     _tables(n)(tmp_path / name, KINDS[name][1])
 
@@ -277,6 +277,6 @@ def _bytes(n: int, head: bytes):
 
 
 @pytest.mark.parametrize("name", [name for name in KINDS if name not in TEXT])
-@pytest.mark.parametrize("n", [SHORT, pytest.param(LONG // 4, marks=pytest.mark.prove)])
+@pytest.mark.parametrize("n", [SHORT, pytest.param(LONG // 10, marks=pytest.mark.prove)])
 def test_any_bytes_behind_a_sound_head_are_read_or_refused(tmp_path, sound_files, name, n):
     _bytes(n, sound_files[name])(tmp_path / name, KINDS[name][1])
