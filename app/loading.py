@@ -148,7 +148,7 @@ def save_emotions(request: tuple[tuple[EmotionModifier, ...], float, Path], _pro
 
 def fit_face(request: tuple[FaceChoice, MarkerSet], progress: Progress) -> FaceRig:
     """Bind a face to a marker set."""
-    import scipy.ndimage  # noqa: F401  the renderer takes half a second to import it, and would on the main thread
+    import scipy.spatial  # noqa: F401  the renderer takes a while to import it, and would on the main thread
 
     face, markers = request
     marker_file = None if face.marker_file is None else Path(face.marker_file)

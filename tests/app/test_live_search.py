@@ -17,6 +17,7 @@ from core.search.compute import NumpyKernels
 from core.search.engine import SearchEngine
 from core.synthesis.options import PAPER
 from tests.core.document.random_edits import made_speech, random_edit
+from tests.core.document.random_walk import RandomWalk
 
 
 @pytest.fixture(scope="module")
@@ -38,21 +39,10 @@ def follow(database, seed: int, n_edits: int, every: int) -> int:
     document.take_database(database, {})
     # the paper's setting makes the motion of one path, which is quick; the path is what this is about
     live = LiveSearch(SearchEngine(database, NumpyKernels(), options=PAPER))
-    infeasible, done, undone = 0, [], []
+    infeasible, walk = 0, RandomWalk(document, chance)
     for i in range(n_edits):
-        if done and chance.random() < 0.25:
-            undone.append(done.pop())
-            document.revert(undone[-1])
-        elif undone and chance.random() < 0.3:
-            done.append(undone.pop())
-            document.apply(done[-1])
-        else:
-            edit = random_edit(document, chance)
-            if edit is None:
-                continue
-            document.apply(edit)
-            done.append(edit)
-            undone.clear()
+        if not walk.undo_or_redo() and walk.edit() is None:
+            continue
         try:
             shown = live.answer(document.speech_input(), document.weights).path
         except UserFacingError:

@@ -30,7 +30,7 @@ from core.errors import UserFacingError
 from core.motion.curation import Removal
 from core.speech.emotion import EmotionModifier
 from core.speech.transcript import PhonemeUtterance, Transcript
-from tests.core.document.random_edits import random_edit
+from tests.core.document.random_walk import RandomWalk
 
 ANGER = (EmotionModifier(0.0, 1.0, "anger"),)
 
@@ -153,28 +153,17 @@ def everything(document):
 
 def walk(seed, n_steps):
     """Do, undo and redo at random, as an undo stack does; each state is met again on the way back."""
-    chance, document = random.Random(seed), Document()
-    done, undone, states = [], [], [everything(document)]
+    document = Document()
+    walk, states = RandomWalk(document, random.Random(seed)), [everything(document)]
+    done = walk.done
     for _ in range(n_steps):
-        if done and chance.random() < 0.3:
-            undone.append(done.pop())
-            document.revert(undone[-1])
-        elif undone and chance.random() < 0.4:
-            done.append(undone.pop())
-            document.apply(done[-1])
-        else:
-            edit = random_edit(document, chance)
+        if not walk.undo_or_redo():
+            edit = walk.edit()
             if edit is None:
                 continue
-            before = edit.label, edit.followed_by(edit)
-            document.apply(edit)
-            assert (edit.label, edit.followed_by(edit) is None) == (before[0], before[1] is None)
-            merged = done[-1].followed_by(edit) if done and len(states) > len(done) else None
+            merged = done[-2].followed_by(edit) if len(done) > 1 else None
             if merged is not None:
-                done[-1] = merged
-            else:
-                done.append(edit)
-            undone.clear()
+                done[-2:] = [merged]
             del states[len(done) :]
             states.append(everything(document))
         assert everything(document) == states[len(done)]
