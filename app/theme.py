@@ -28,6 +28,7 @@ class Theme:
     line: str
     text: str
     dim: str
+    faint: str
     accent: str
     on_accent: str
     warning: str
@@ -36,11 +37,13 @@ class Theme:
 
 DARK = Theme(
     ground="#1a1c1f", raised="#24272b", canvas="#131417", line="#2e3136", text="#d9dbdf", dim="#8d929b",
+    faint="#5d626b",
     accent="#e3ad55", on_accent="#1a1408", warning="#3a2f1d",
     emotion={"neutral": "#c8cbd0", "happiness": "#5b9df5", "anger": "#e8574f", "sadness": "#5cb463"},
 )  # fmt: skip
 LIGHT = Theme(
     ground="#f3f3f1", raised="#ffffff", canvas="#e9e9e6", line="#d2d2cd", text="#26282b", dim="#6d717a",
+    faint="#a3a6ac",
     accent="#a8690a", on_accent="#ffffff", warning="#f6e7c8",
     emotion={"neutral": "#4a4d52", "happiness": "#2566c4", "anger": "#c4302a", "sadness": "#2c8236"},
 )  # fmt: skip
@@ -130,7 +133,7 @@ def _style_sheet(t: Theme) -> str:
         border: 1px solid {t.line}; border-radius: 4px; padding: 4px 8px; min-height: 16px; text-align: left; }}
     QPushButton:hover, QComboBox:hover {{ border-color: {t.dim}; }}
     QPushButton:focus, QComboBox:focus {{ border-color: {t.accent}; }}
-    QPushButton:disabled {{ color: {t.dim}; }}
+    QPushButton:disabled {{ color: {t.faint}; }}
     QPushButton[role="primary"] {{ background: {t.accent}; color: {t.on_accent}; border-color: {t.accent};
         font-weight: 600; padding: 8px; text-align: center; }}
     QPushButton[role="primary"]:hover {{ border-color: {t.text}; }}
@@ -140,7 +143,8 @@ def _style_sheet(t: Theme) -> str:
         border-radius: 3px; padding: 2px 6px; color: {t.dim}; font-size: {SMALL_PX}px; }}
     QPushButton[role="quiet"]:hover, QToolButton:hover {{ color: {t.text}; }}
     QPushButton[role="quiet"]:focus, QToolButton:focus {{ border-color: {t.accent}; }}
-    QPushButton[role="quiet"]:disabled, QToolButton:disabled {{ color: {t.line}; }}
+    QPushButton[role="quiet"]:disabled, QToolButton:disabled {{ color: {t.faint}; }}
+    QToolButton::menu-indicator {{ image: none; }}
     QToolButton:checked {{ color: {t.accent}; }}
     QPushButton::menu-indicator {{ image: url({_CHEVRON}); width: 12px; height: 12px;
         subcontrol-position: right center; right: 6px; }}

@@ -190,6 +190,10 @@ class MainWindow(AskingWindow):
         credit = rig.face.credit if rig is not None and rig.face.credit else texts.ABOUT_DEFAULT_FACE
         QMessageBox.about(self, texts.ABOUT_TITLE, texts.ABOUT.format(face=credit))
 
+    def _gives_up_export(self) -> bool:
+        answer = QMessageBox.question(self, texts.APPLICATION, texts.EXPORT_IS_RUNNING)
+        return answer == QMessageBox.StandardButton.Yes
+
     # Layout
 
     def _restore_layout(self) -> None:
@@ -220,7 +224,10 @@ class MainWindow(AskingWindow):
         return super().event(event)
 
     def closeEvent(self, event) -> None:
-        """Remember the layout and stop everything."""
+        """Remember the layout and stop everything; a film that is being written is not given up without a word."""
+        if self.authoring.jobs.is_running("export") and not self._gives_up_export():
+            event.ignore()
+            return
         self._save_layout()
         self.keeper.close()
         self.importing.shut_down()

@@ -27,13 +27,14 @@ class ViewState:
         self._document = document
         self.slot: int | None = None
         self._span_end: int | None = None
+        self._phone_selected: str | None = None
         self.playhead_s = 0.0
         self.map_phone: str | None = None
 
     def select_slot(self, slot: int | None) -> None:
         """Select an utterance; the map of its phone comes up, unless it is silence or has none."""
         self.slot = self._span_end = slot
-        phone = self.slot_phone
+        phone = self._phone_selected = self.slot_phone
         if phone is not None and phone != PAU and self._has_map(phone) and phone != self.map_phone:
             self.map_phone = phone
             self.map_chosen.emit()
@@ -48,11 +49,13 @@ class ViewState:
             self.slot_selected.emit()
 
     def fit(self) -> None:
-        """Select nothing that the speech no longer has."""
+        """Select nothing that the speech no longer has; where another phone is said in the slot, its map comes up."""
         speech = self._document.speech
         n_slots = 0 if speech is None else len(speech.transcript.phonemes)
         if self.slot is not None and max(self.slot, self._span_end) >= n_slots:
             self.select_slot(n_slots - 1 if n_slots else None)
+        elif self.slot_phone != self._phone_selected:
+            self.select_slot(self.slot)
         else:
             self.slot_selected.emit()
 

@@ -147,24 +147,33 @@ def choose(monkeypatch):
 
 
 @pytest.fixture
-def animated(qtbot, open_window, choose, database_path, speech_path):
+def animated(animated_late):
     """A window in which the hum was opened and Synthesise pressed, all through its buttons."""
+    return animated_late()
+
+
+@pytest.fixture
+def animated_late(qtbot, open_window, choose, database_path, speech_path):
+    """Return a function that makes such a window."""
     from PySide6.QtCore import Qt
     from PySide6.QtTest import QTest
 
     def click(widget):
         QTest.mouseClick(widget, Qt.MouseButton.LeftButton, pos=widget.rect().center())
 
-    window = open_window()
-    choose(database_path, speech_path)
-    click(window.control.database.open_button)
-    qtbot.waitUntil(lambda: window.authoring.document.database is not None, timeout=WAIT_MS)
-    window.control.speech.open_action.trigger()
-    qtbot.waitUntil(lambda: window.authoring.document.speech is not None, timeout=WAIT_MS)
-    click(window.control.synthesise_button)
-    qtbot.waitUntil(lambda: window.authoring.document.answer is not None, timeout=WAIT_MS)
-    qtbot.waitUntil(lambda: not window.motion.is_empty)
-    return window
+    def make():
+        window = open_window()
+        choose(database_path, speech_path)
+        click(window.control.database.open_button)
+        qtbot.waitUntil(lambda: window.authoring.document.database is not None, timeout=WAIT_MS)
+        window.control.speech.open_action.trigger()
+        qtbot.waitUntil(lambda: window.authoring.document.speech is not None, timeout=WAIT_MS)
+        click(window.control.synthesise_button)
+        qtbot.waitUntil(lambda: window.authoring.document.answer is not None, timeout=WAIT_MS)
+        qtbot.waitUntil(lambda: not window.motion.is_empty)
+        return window
+
+    return make
 
 
 @pytest.fixture

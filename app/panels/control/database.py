@@ -23,12 +23,12 @@ class DatabaseSection(Section):
         super().__init__(texts.DATABASE)
         self._authoring = authoring
         self.badge = label(texts.SYNTHETIC, "badge", texts.SYNTHETIC_TIP)
+        self.open_button = quiet_button(texts.OPEN_DATABASE, "", self.database_asked.emit)
         self.title_row.addWidget(self.badge)
+        self.title_row.addWidget(self.open_button)
         self.name, self.facts = ElidedLabel("plain"), label()
         self.column.addWidget(self.name)
         self.column.addWidget(self.facts)
-        self.open_button = quiet_button(texts.OPEN_DATABASE, "", self.database_asked.emit)
-        self.add_row(self.open_button)
         authoring.document.changed.connect(self.on_document_changed)
         self.on_document_changed(Change.NODES, None)
 

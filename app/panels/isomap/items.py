@@ -180,9 +180,15 @@ class NodeTrajectory(pg.GraphicsObject):
         painter.drawEllipse(at_px[0], 2.5, 2.5)
         self._paint_arrows(painter, np.array([[p.x(), p.y()] for p in at_px]))
         if self._says_time and self._duration_s > 0 and n > 1:
-            painter.setPen(colour(theme().text))
-            painter.setFont(small_font())
-            painter.drawText(at_px[-1] + QPointF(8, -6), f"{1000 * self._duration_s:.0f} ms")
+            self._paint_length(painter, at_px[-1] + QPointF(8, -6))
+
+    def _paint_length(self, painter: QPainter, at_px: QPointF) -> None:
+        text = f"{1000 * self._duration_s:.0f} ms"
+        painter.setFont(small_font())
+        box = QRectF(painter.fontMetrics().boundingRect(text)).translated(at_px).adjusted(-3, -1, 3, 1)
+        painter.fillRect(box, colour(theme().canvas, 0.7))  # dots lie beneath
+        painter.setPen(colour(theme().text))
+        painter.drawText(at_px, text)
 
     def _paint_arrows(self, painter: QPainter, at_px: np.ndarray) -> None:
         steps = np.diff(at_px, axis=0)

@@ -65,7 +65,7 @@ class TimelineBar(QWidget):
         self.snap.group.idClicked.connect(lambda _: timeline.set_snap(self.snap.key))
         row.addWidget(self.snap)
         row.addStretch(1)
-        self.spectrogram = self._button(texts.SPECTROGRAM, texts.SPECTROGRAM_TIP, timeline.show_spectrogram)
+        self.spectrogram = self._button(texts.SPECTROGRAM, texts.SPECTROGRAM_TIP, timeline.heard.want_spectrogram)
         self.spectrogram.setCheckable(True)
         row.addWidget(self.spectrogram)
         self.units = Choice([(unit, texts.UNITS[unit], texts.UNITS_TIP) for unit in UNITS])

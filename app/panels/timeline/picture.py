@@ -40,10 +40,12 @@ def paint_lanes(timeline: Timeline, picture: QPixmap) -> None:
         first, last = view.span
         paint_selection(painter, area, scale.x(slots[first][0]), scale.x(slots[last][1]))
     paint_ruler(painter, lanes["ruler"], scale, end_s, timeline.ruler)
-    if timeline.spectrogram is not None:
-        paint_spectrogram(painter, lanes["wave"], scale, timeline.spectrogram, end_s)
-    if timeline.peaks is not None:
-        paint_wave(painter, lanes["wave"], scale, timeline.peaks, end_s, faint=timeline.spectrogram is not None)
+    if timeline.heard.spectrogram is not None:
+        paint_spectrogram(painter, lanes["wave"], scale, timeline.heard.spectrogram, end_s)
+    if timeline.heard.peaks is not None:
+        paint_wave(
+            painter, lanes["wave"], scale, timeline.heard.peaks, end_s, faint=timeline.heard.spectrogram is not None
+        )
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     words = [(w.word, w.start_s, w.end_s) for w in transcript.words]
     paint_boxes(painter, lanes["words"], scale, words, None)

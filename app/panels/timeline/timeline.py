@@ -12,20 +12,17 @@ from app import texts
 from app.authoring import Authoring
 from app.panels.focus_ring import FocusRing
 from app.panels.timeline.curve_lane import LANE, DragKey, remove_key
+from app.panels.timeline.description import description
 from app.panels.timeline.gestures import DragBoundary, Gesture, PaintEmotion, Scrub
+from app.panels.timeline.heard import HeardSound
 from app.panels.timeline.lanes import TimeScale, paint_playhead
 from app.panels.timeline.phoneme_menu import PhonemeEditor, phoneme_menu
 from app.panels.timeline.picture import paint_lanes
 from app.panels.timeline.ruler import Ruler
 from app.panels.timeline.snapping import FREE, PHONEMES, WORDS
-from app.panels.timeline.wave import Peaks
 from app.theme import STEP, colour, theme
 from core.document.change import Change
-from core.media.audio import Audio
 from core.media.video import FRAME_RATES
-from core.progress import Progress
-from core.speech.phoneme import PAU
-from core.speech.spectrogram import Spectrogram
 from core.synthesis.polish import REGIONS
 
 _NAMES_PX = 9 * STEP
@@ -53,11 +50,9 @@ class Timeline(QWidget):
     def __init__(self, authoring: Authoring) -> None:
         super().__init__()
         self.authoring = authoring
-        self.peaks: Peaks | None = None
-        self.spectrogram: Spectrogram | None = None
+        self.heard = HeardSound(authoring, self)
         self.brush, self.snap, self.ruler = "happiness", PHONEMES, Ruler()
         self.region = REGIONS[0]
-        self._wants_spectrogram = False
         self._start_s, self._shown_s = 0.0, 1.0
         self._gesture: Gesture | None = None
         self._lanes_picture: QPixmap | None = None  # painted once; only the playhead moves sixty times a second
@@ -69,6 +64,7 @@ class Timeline(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.setMinimumHeight(sum(_HEIGHTS_PX.values()) + _LEAST_WAVE_PX)
         authoring.document.changed.connect(self.on_document_changed)
+        self.heard.changed.connect(self.renew)
         authoring.view.slot_selected.connect(self.renew)
         authoring.view.playhead_moved.connect(self.on_playhead_moved)
 
@@ -109,12 +105,7 @@ class Timeline(QWidget):
     def on_document_changed(self, change: Change, _origin: object) -> None:
         """Show other speech, boundaries, emotions, pins or costs."""
         if change & Change.SPEECH:
-            self.peaks = self.spectrogram = None
             self.zoom_all()
-            speech = self.authoring.document.speech
-            if speech is not None:
-                self.authoring.jobs.start("peaks", "", speech.audio, _peaks, self._show_peaks)
-                self.show_spectrogram(self._wants_spectrogram)
         if change & Change.OUTPUT:
             output = self.authoring.document.output
             self.ruler = replace(self.ruler, fps=FRAME_RATES[output.frame_rate], first_frame=output.start_frame)
@@ -133,14 +124,6 @@ class Timeline(QWidget):
             self._look_at(time_s, self._shown_s)
         self.update()
 
-    def _show_peaks(self, peaks: Peaks) -> None:
-        self.peaks = peaks
-        self.renew()
-
-    def _show_spectrogram(self, spectrogram: Spectrogram) -> None:
-        self.spectrogram = spectrogram
-        self.renew()
-
     # Ways of working
 
     def set_brush(self, emotion: str) -> None:
@@ -156,18 +139,6 @@ class Timeline(QWidget):
     def set_snap(self, snap: str) -> None:
         """Let strokes cover whole phonemes, whole words, or just what they touch."""
         self.snap = snap
-
-    def show_spectrogram(self, shown: bool) -> None:
-        """Show the spectrogram behind the wave, or the wave alone."""
-        self._wants_spectrogram = shown
-        speech = self.authoring.document.speech
-        if shown and speech is not None:
-            title = texts.MAKING_SPECTROGRAM
-            self.authoring.jobs.start("spectrogram", title, speech.audio, _spectrogram, self._show_spectrogram)
-        else:
-            self.authoring.jobs.cancel("spectrogram")
-            self.spectrogram = None
-            self.renew()
 
     def set_unit(self, unit: str) -> None:
         """Write times in seconds, frames or timecode."""
@@ -370,31 +341,6 @@ class Timeline(QWidget):
         if slot is None:
             QToolTip.hideText()
             return
-        QToolTip.showText(event.globalPos(), self.description(slot, self._lane_at(event.pos().y())), self)
-
-    def description(self, slot: int, lane: str) -> str:
-        """Return what there is to know of a slot, in a lane."""
-        document = self.authoring.document
-        utterance = document.speech.transcript.phonemes[slot]
-        phone = texts.SILENCE if utterance.phone == PAU else f"/{utterance.phone}/"
-        lines = [texts.UTTERANCE.format(phone=phone, milliseconds=1000 * (utterance.end_s - utterance.start_s))]
-        if slot in document.pins:
-            lines.append(texts.PINNED.format(node=document.pins[slot]))
-        if slot in document.locks:
-            lines.append(texts.LOCKED)
-        if lane == "cost" and document.breakdown is not None:
-            unit = document.cost_unit
-            terms = document.breakdown[slot].items()
-            lines += [texts.COST_TERM.format(term=texts.TERMS[name], cost=v / unit) for name, v in terms if v > 0]
-            lines.append(texts.COST_OF_SLOT.format(cost=sum(document.breakdown[slot].values()) / unit))
-        if lane == "price" and document.next_best_prices is not None:
-            lines.append(texts.NEXT_BEST.format(price=document.next_best_prices[slot] / document.cost_unit))
-        return "\n".join(lines)
-
-
-def _peaks(audio: Audio, _progress: Progress) -> Peaks:
-    return Peaks.of(audio)
-
-
-def _spectrogram(audio: Audio, _progress: Progress) -> Spectrogram:
-    return Spectrogram.of(audio)
+        QToolTip.showText(
+            event.globalPos(), description(self.authoring.document, slot, self._lane_at(event.pos().y())), self
+        )

@@ -7,6 +7,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
+from app.panels.timeline.description import description
 from core.speech.emotion import EmotionModifier
 
 LEFT = Qt.MouseButton.LeftButton
@@ -144,9 +145,9 @@ def test_costs_and_prices_come_with_the_motion(animated, qtbot):
     qtbot.waitUntil(lambda: document.breakdown is not None, timeout=WAIT_MS)
     total = sum(sum(row.values()) for row in document.breakdown)
     assert total == pytest.approx(document.answer.path.cost)
-    text = animated.timeline.description(2, "cost")
+    text = description(animated.authoring.document, 2, "cost")
     assert "cost of this slot" in text
-    assert "next best" in animated.timeline.description(2, "price")
+    assert "next best" in description(animated.authoring.document, 2, "price")
 
 
 def test_keys_of_the_polish_curve_are_set_dragged_and_taken_away_and_undone(animated, qtbot):
