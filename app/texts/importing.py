@@ -4,7 +4,6 @@ from __future__ import annotations
 
 TITLE = "Import captures"
 ACTION = "&Import captures…"
-UNNAMED = "captures"
 LOAD_PLAN = "Load plan…"
 LOAD_PLAN_TIP = "Go on with an import that was saved (Ctrl+O)"
 SAVE_PLAN = "Save plan…"
@@ -31,6 +30,7 @@ EDIT_FILES = "Add files"
 EDIT_LEAVE_OUT = "Leave sentences out"
 EDIT_EMOTION = "Set emotion"
 EDIT_WORDS = "Set words"
+EDIT_READING = "Read files otherwise"
 EDIT_MATCH = "Match markers"
 EDIT_UNMATCH = "Unmatch a marker"
 EDIT_HEAD = "Choose head markers"
@@ -182,3 +182,102 @@ MEND_NOTHING = "Nothing is to be mended in “{name}”."
 MEND_TOTAL = "{gaps} gaps filled · {long} too long · {spikes} spikes · {swaps} swaps"
 STATE_SOUND = "nothing to mend"
 STATE_MEND = "{n} mends, {long} open"
+
+# Sound and words
+SOUND = "Sound and words"
+SOUND_HINT = (
+    "Sound and motion should start together. The mouth's opening is laid over the loudness of the speech; what was "
+    "measured can be taken out, and each sentence shifted by hand."
+)
+WORKING_SPEECH = "Placing words, comparing sound and motion"
+OFFSETS = "Take out:"
+OFFSETS_TIP = "What is done with the measured lateness; an unsure measurement (below 50 %) is never taken out"
+OFFSET_MODES = {
+    "keep": "nothing that was measured", "session": "one offset, measured over all", "each": "what each measured",
+}  # fmt: skip
+SOUND_COLUMNS = ("Sentence", "Measured", "Sure", "By hand", "Words")
+SOUND_COLUMN_TIPS = (
+    "The least sure stand first",
+    "How late the motion is against its sound, as measured",
+    "How clearly mouth and speech agree there, and nowhere else",
+    "The shift set by hand",
+    "What is said, and how it was placed",
+)
+MS = "{ms:+.0f} ms"
+SURE = "{share:.0%}"
+SHIFT = "Shift by hand:"
+SHIFT_TIP = "Milliseconds by which the motion is late; they are taken out (drag, or arrow keys)"
+SHIFT_ALL = "Same for all"
+SHIFT_ALL_TIP = "Shift all sentences by as much"
+PLAY = "Play"
+PLAY_TIP = "Hear the sound; the line shows where the mouth is (Space)"
+OPENING_AXIS = "Mouth opening (mm)"
+AGREEMENT_AXIS = "Agreement"
+AGREEMENT_X = "Motion late by (ms)"
+SOUND_LEGEND_LOUD = "loudness"
+SOUND_LEGEND_MOUTH = "mouth opening, shifted by {ms:+.0f} ms"
+SESSION_OFFSET = "all together: {ms:+.0f} ms, sure {share:.0%}"
+NOTHING_HEARD = "There is no sound in “{name}”; it is imported as silence."
+FAILED_SENTENCE = "“{name}” cannot be imported: {why}"
+STATE_OFFSET = "{ms:+.0f} ms, sure {share:.0%}"
+ALIGNMENTS = {"given": "given", "aligned": "aligned", "recognised": "recognised", "silence": "silence"}
+
+# Review
+REVIEW = "Review"
+REVIEW_HINT = (
+    "Where each word and phone was placed, the least sure sentence first. Drag a boundary where it is wrong, "
+    "then accept (Return) and go on."
+)
+REVIEW_EMPTY = "There is no speech to review yet; choose captures with sound in the step “Files”."
+LISTENING_AGAIN = "Listening again"
+REVIEW_COLUMNS = ("Sentence", "Sure", "Words")
+REVIEW_COLUMN_TIPS = (
+    "The least sure stand first; accepted ones last",
+    "How little the boundaries move when the same words are placed again through noise; agreement, not probability",
+    "How they were placed",
+)
+ACCEPT = "Accept"
+ACCEPT_TIP = "Keep these boundaries and go to the next sentence (Return)"
+ACCEPTED = "accepted"
+PREVIOUS = "Previous"
+PREVIOUS_TIP = "The sentence before (Page Up)"
+NEXT_SENTENCE = "Next"
+NEXT_SENTENCE_TIP = "The next sentence (Page Down)"
+REVERT = "Revert"
+REVERT_TIP = "Take back what was dragged in this sentence (Escape)"
+LANES_TIP = "arrows choose a boundary, Ctrl+arrows move it by 10 ms · wheel zooms, Shift+wheel moves"
+PHONE_TIP = "/{phone}/ {ms:.0f} ms\nits boundaries move by {shift:.0f} ms through noise"
+PHONE_TIP_UNKNOWN = "/{phone}/ {ms:.0f} ms"
+LANE_SOUND = "sound"
+LANE_WORDS = "words"
+LANE_PHONES = "phones"
+LANE_DOUBT = "unsure"
+SILENCE = "silence"
+STATE_REVIEW = "{n} of {all} accepted"
+CANNOT_KEEP = "The accepted alignment cannot be kept in '{folder}'."
+
+# Build
+BUILD = "Build"
+BUILD_HINT = "Where the database goes, and how it is made. A build that was cut goes on where it was."
+TARGET = "Database file"
+NAME = "Name"
+RATE_OF = "Frame rate"
+DIMS = "Dimensions"
+DIMS_TIP = "Principal components; the paper kept 25 of 270"
+HOLD_OUT = "Hold out"
+HOLD_OUT_TIP = "Keep a sixth of the sentences out of the database, to tune weights and to measure with"
+HOLD_OUTS = {"": "nothing", "sentences": "a sixth of the sentences", "letters": "by letters (GRID)",
+             "digits": "by digits (GRID)"}  # fmt: skip
+BROWSE = "Browse…"
+BUILD_NOW = "Build the database"
+BUILD_NOW_TIP = "Carry the plan out (Ctrl+Return)"
+CANCEL_BUILD = "Cancel"
+BUILDING = "Building “{name}”"
+OPEN_BUILT = "Open in the workstation"
+OPEN_BUILT_TIP = "Search this database from now on, in the main window"
+BUILT = "Built {path}: {nodes} motion nodes of {sentences} sentences"
+BUILD_EMPTY = "Choose captures in the step “Files” first."
+FILTER_DATABASE = "Motion databases (*.h5)"
+REPORT_COLUMNS = ("Sentence", "Gaps", "Open", "Spikes", "Swaps", "Head", "Late", "Taken out", "Words", "Notes")
+STATE_BUILT = "built"
+STATE_BUILDING = "building…"

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.jobs import JobRunner
-from app.panels.importing.captures import CaptureFacts, CaptureReader
+from app.panels.importing.captures import CaptureFacts, read_facts
 from app.texts import importing as texts
+from core.actress.corpus import actress_marker_set
 from core.errors import UserFacingError
-from core.importing.plan import ImportPlan, SentencePlan, read_plan, write_plan
+from core.importing.plan import ImportPlan, Reading, SentencePlan, read_plan, write_plan
+from core.importing.proposals import with_proposals
 from core.importing.survey import Survey, survey
 from core.progress import Progress
 
@@ -71,30 +73,44 @@ class ImportDraft(QObject):
         self._paths = self._paths[:-1] if self.plan is not None else ()
         self.failed.emit(error.message, error.remedy)
 
-    def _on_surveyed(self, found: Survey) -> None:
-        self.survey = found
-        if not found.sentences:
+    def _on_surveyed(self, found: _Found) -> None:
+        self.survey = found.survey
+        if found.trouble is not None:
+            self.failed.emit(*found.trouble)
+        if found.plan is None:
             self._paths = ()
             self.failed.emit(texts.NO_MOTION, texts.NO_MOTION_REMEDY)
             return
-        fresh = found.plan(self._paths[0].stem or texts.UNNAMED)
         if self.plan is None:
-            self._take(fresh)
+            self._take(found.plan)
         else:  # what was decided stays; only sentences are added
             known = {s.name for s in self.sentences}
-            added = tuple(s for s in fresh.sentences if s.name not in known)
+            added = tuple(s for s in found.plan.sentences if s.name not in known)
             self.change(texts.EDIT_FILES, sentences=(*self.sentences, *added))
         self.read_facts()
+
+    def set_reading(self, reading: Reading) -> None:
+        """Read all files otherwise."""
+        if self.plan is not None and reading != self.plan.reading:
+            self.change(texts.EDIT_READING, reading=reading)
+            self.facts = {}
+            self.read_facts()
 
     def read_facts(self) -> None:
         """Read rate, frames and markers of every sentence that is not known yet."""
         unknown = tuple(s for s in self.sentences if s.name not in self.facts)
         if unknown:
-            self.jobs.start("facts", texts.READING, unknown, CaptureReader.facts_of, self._on_facts)
+            request = unknown, self.plan.reading
+            self.jobs.start("facts", texts.READING, request, read_facts, self._on_facts)
 
     def _on_facts(self, facts: Mapping[str, CaptureFacts]) -> None:
         self.facts.update(facts)
         self.learnt.emit()
+
+    def first_facts(self) -> CaptureFacts | None:
+        """Return what is known of the first sentence that can be read."""
+        known = (self.facts.get(s.name) for s in self.sentences)
+        return next((facts for facts in known if facts is not None and not facts.problem), None)
 
     # The plan
 
@@ -160,5 +176,23 @@ class _PlanChange(QUndoCommand):
         self._draft.show(self._before)
 
 
-def _look(paths: tuple[Path, ...], progress: Progress) -> Survey:
-    return survey(paths, progress)
+@dataclass(frozen=True)
+class _Found:
+    survey: Survey
+    plan: ImportPlan | None
+    trouble: tuple[str, str] | None = None
+
+
+def _look(paths: tuple[Path, ...], progress: Progress) -> _Found:
+    """Survey the files and propose what they leave open, as `efase import` does; a job."""
+    found = survey(paths, progress.part(0.0, 0.5))
+    if not found.sentences:
+        return _Found(found, None)
+    plan = found.plan(paths[0].resolve().stem)
+    if plan.rigid and plan.landmarks:
+        return _Found(found, plan)
+    progress.step(0.5, texts.MATCHING)
+    try:
+        return _Found(found, with_proposals(plan, actress_marker_set()))
+    except UserFacingError as error:
+        return _Found(found, plan, (error.message, error.remedy))

@@ -73,13 +73,9 @@ class HeadPage(Page):
             return texts.STATE_HEAD.format(n=len(plan.rigid), rms=self._residual.whole_mm)
         return texts.STATE_HEAD_SHORT.format(n=len(plan.rigid))
 
-    def _facts(self) -> CaptureFacts | None:
-        known = (self.draft.facts.get(s.name) for s in self.draft.sentences)
-        return next((facts for facts in known if facts is not None and not facts.problem), None)
-
     def refresh(self) -> None:
         """See `Page.refresh`."""
-        plan, facts = self.draft.plan, self._facts()
+        plan, facts = self.draft.plan, self.draft.first_facts()
         self.sentence.renew()
         if facts is None:
             return
@@ -134,7 +130,7 @@ class HeadPage(Page):
         note = texts.RESIDUAL_NOTE.format(n=len(residual.names), name=residual.sentence, rms=residual.whole_mm,
                                           most=most)  # fmt: skip
         self.note.setText(note if len(self.draft.plan.rigid) >= 3 else f"{note}  {texts.RESIDUAL_FEW}")
-        self._fill(tuple(kept_markers(self.draft.plan, self._facts().names).values()))
+        self._fill(tuple(kept_markers(self.draft.plan, self.draft.first_facts().names).values()))
         self.draft.measured.emit()
 
     # Reactions

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.panels.importing.captures import Capture, CaptureFacts
+from app.panels.importing.captures import CaptureFacts
 from core.importing.plan import ImportPlan, SentencePlan
 from core.importing.steady_markers import propose_steady, rigid_away_mm
+from core.importing.takes import read_take
 from core.progress import Progress
 
 
@@ -72,7 +73,8 @@ class Residual:
 
 def measure(request: ResidualRequest, progress: Progress) -> Residual:
     """Take the head's motion out of one sentence and see what is left; a job."""
-    track = Capture.read(request.sentence, progress).track
+    progress.step(0.1, request.sentence.name)
+    track = read_take(request.sentence, request.plan.reading)
     kept = kept_markers(request.plan, track.names)
     rows = {ours: track.names.index(name) for name, ours in kept.items()}
     names = tuple(name for name in request.plan.rigid if name in rows)

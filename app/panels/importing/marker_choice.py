@@ -8,10 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
+from core.actress.corpus import actress_marker_set
 from core.face.characters import DEFAULT
 from core.face.default_face import FaceUnavailable, character_face
 from core.face.face import Face
-from core.face.marker_placement import ACTRESS_FILE, load_marker_file, marker_set_on
+from core.face.marker_placement import ACTRESS_FILE, load_marker_file
 from core.importing.marker_parts import propose_parts
 from core.importing.matching import MarkerMatching, match_markers, typical_pose
 from core.importing.plan import ImportPlan
@@ -63,15 +64,12 @@ class MatchPicture:
 def match(request: MatchRequest, progress: Progress) -> MatchPicture:
     """Match, and find where everything is drawn; a job."""
     progress.step(0.1, "matching markers")
+    ours = actress_marker_set()
     try:
         face = character_face(DEFAULT)
-        ours = marker_set_on(face, load_marker_file(ACTRESS_FILE))
     except FaceUnavailable:
-        face, ours = None, None
+        face = None
     wanted = request.wanted or ours
-    if wanted is None:  # no face, no other set: the capture is its own picture
-        pose = typical_pose(request.sample)
-        wanted = MarkerSet(request.names, np.nan_to_num(pose - np.nanmean(pose, axis=0)))
     matching = match_markers(request.names, request.sample, wanted)
     if not request.own:
         places = wanted.rest if face is None else _on_face(face, wanted, ours)

@@ -8,7 +8,6 @@ from PySide6.QtWidgets import QComboBox, QFileDialog, QHBoxLayout, QPushButton, 
 
 from app import texts as window_texts
 from app.authoring import Authoring
-from app.panels.importing.captures import CaptureFacts
 from app.panels.importing.draft import ImportDraft
 from app.panels.importing.marker_choice import (
     FILE,
@@ -79,7 +78,7 @@ class MarkersPage(Page):
     def state(self) -> str:
         """See `Page.state`."""
         plan = self.draft.plan
-        facts = self._facts()
+        facts = self.draft.first_facts()
         if plan is None or facts is None:
             return ""
         if is_own(plan):
@@ -87,10 +86,6 @@ class MarkersPage(Page):
             return texts.STATE_OWN.format(n=n, landmarks=len(plan.landmarks))
         wanted = len(self._picture.wanted) if self._picture is not None and not self._picture.own else len(plan.markers)
         return texts.STATE_MATCHED.format(n=len(plan.markers), wanted=wanted)
-
-    def _facts(self) -> CaptureFacts | None:
-        known = (self.draft.facts.get(s.name) for s in self.draft.sentences)
-        return next((facts for facts in known if facts is not None and not facts.problem), None)
 
     def pairs(self) -> dict[str, str]:
         """Return captured name to wanted name, or for own markers to the landmark that it is."""
@@ -102,7 +97,7 @@ class MarkersPage(Page):
 
     def refresh(self) -> None:
         """See `Page.refresh`."""
-        facts = self._facts()
+        facts = self.draft.first_facts()
         if facts is None:
             return
         own = is_own(self.draft.plan)
@@ -124,7 +119,7 @@ class MarkersPage(Page):
             self.wanted.insertItem(2, texts.WANTED_OPEN.format(name=database.name), OPEN)
 
     def _start(self, own: bool, done) -> None:
-        facts, wanted = self._facts(), None
+        facts, wanted = self.draft.first_facts(), None
         if self.wanted.currentData() == OPEN:
             wanted = self._authoring.document.database.markers
         elif self.wanted.currentData() == FILE:
@@ -137,7 +132,7 @@ class MarkersPage(Page):
         self._show()
 
     def _show(self) -> None:
-        picture, pairs, facts = self._picture, self.pairs(), self._facts()
+        picture, pairs, facts = self._picture, self.pairs(), self.draft.first_facts()
         found = Cloud(facts.names, picture.matching.placed)
         wanted = Cloud(picture.wanted.names, picture.places)
         if self._drawn is not picture:
@@ -175,7 +170,7 @@ class MarkersPage(Page):
 
     def _propose(self, picture: MatchPicture) -> None:
         self._picture = picture
-        self._asked = (self._facts().names, picture.own, self.wanted.currentData(), self._file_markers)
+        self._asked = (self.draft.first_facts().names, picture.own, self.wanted.currentData(), self._file_markers)
         if picture.own:
             fields = fields_for_own(self.draft.plan, picture.landmarks, picture.groups)
         else:
@@ -190,7 +185,7 @@ class MarkersPage(Page):
             pairs[found] = wanted
         plan, edit = self.draft.plan, texts.EDIT_MATCH if wanted else texts.EDIT_UNMATCH
         if self._picture.own:
-            names = plan.markers or {name: name for name in self._facts().names}
+            names = plan.markers or {name: name for name in self.draft.first_facts().names}
             landmarks = {anatomy: names[f] for f, anatomy in pairs.items()}
             self.draft.change(edit, landmarks=landmarks)
         else:

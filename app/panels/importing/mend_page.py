@@ -117,7 +117,14 @@ class MendPage(Page):
         self.faults.blockSignals(False)
         for widget in (self.spike, self.deviations):
             widget.setEnabled(limits.faults)
-        looked = (limits, plan.markers, plan.rigid, [(s.name, s.motion, s.take) for s in plan.sentences])
+        looked = (
+            limits,
+            plan.markers,
+            plan.rigid,
+            plan.reading,
+            plan.like,
+            [(s.name, s.motion, s.take) for s in plan.sentences],
+        )
         if looked != self._looked:
             self._looked = looked
             request = MendRequest(plan, plan.sentences)

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.panels.importing.captures import CaptureReader
-from app.panels.importing.head_work import kept_markers
 from core.errors import UserFacingError
 from core.importing.mending import GAP, LONG_GAP, SPIKE, SWAP, Mended, MendRow, mend
 from core.importing.plan import ImportPlan, SentencePlan
+from core.importing.sentence_work import model_of, picked
+from core.importing.takes import read_take
 from core.progress import Progress
 
 
@@ -52,14 +52,14 @@ class MendFacts:
 
 def look(request: MendRequest, progress: Progress) -> Mapping[str, MendFacts]:
     """Mend each sentence and keep what was done; a job. What cannot be read has no entry."""
-    reader, found = CaptureReader(), {}
+    found = {}
     for i, sentence in enumerate(request.sentences):
         progress.step(i / len(request.sentences), sentence.name)
         try:
-            track, _, mended = _mended(request.plan, sentence, reader)
+            rate_hz, _, _, mended = _mended(request.plan, sentence)
         except UserFacingError:
             continue
-        found[sentence.name] = MendFacts(track.rate_hz, mended.rows)
+        found[sentence.name] = MendFacts(rate_hz, mended.rows)
     return found
 
 
@@ -81,15 +81,14 @@ def picture(request: tuple[ImportPlan, SentencePlan], progress: Progress) -> Men
     """Mend one sentence and keep all of it; a job."""
     plan, sentence = request
     progress.step(0.1, sentence.name)
-    track, names, mended = _mended(plan, sentence, CaptureReader())
-    columns = [track.names.index(name) for name in kept_markers(plan, track.names)]
-    return MendPicture(sentence.name, names, track.rate_hz, track.positions[:, columns], mended.positions)
+    rate_hz, names, before, mended = _mended(plan, sentence)
+    return MendPicture(sentence.name, names, rate_hz, before, mended.positions)
 
 
-def _mended(plan: ImportPlan, sentence: SentencePlan, reader: CaptureReader) -> tuple[object, tuple[str, ...], Mended]:
-    track = reader.track(sentence)
-    kept = kept_markers(plan, track.names)
-    names = tuple(kept.values())
-    positions = track.positions[:, [track.names.index(name) for name in kept]]
+def _mended(plan: ImportPlan, sentence: SentencePlan) -> tuple[float, tuple[str, ...], np.ndarray, Mended]:
+    """As `core.importing.sentence_work.work_on` mends, without placing the speech."""
+    track = read_take(sentence, plan.reading)
+    names, positions = picked(track, plan.markers, sentence)
     rigid = [names.index(name) for name in plan.rigid if name in names]
-    return track, names, mend(positions, names, track.rate_hz, plan.mending, rigid)
+    model = model_of(plan.like, names, track)
+    return track.rate_hz, names, positions, mend(positions, names, track.rate_hz, plan.mending, rigid, model)

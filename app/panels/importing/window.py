@@ -21,14 +21,19 @@ from PySide6.QtWidgets import (
 from app.authoring import Authoring
 from app.icons import icon
 from app.jobs import JobRunner
+from app.panels.importing.build_page import BuildPage
 from app.panels.importing.draft import ImportDraft
 from app.panels.importing.files_page import FilesPage
 from app.panels.importing.head_page import HeadPage
 from app.panels.importing.markers_page import MarkersPage
 from app.panels.importing.mend_page import MendPage
 from app.panels.importing.page import Page
+from app.panels.importing.review_page import ReviewPage
+from app.panels.importing.sound_page import SoundPage
+from app.panels.importing.speech_work import SpeechWork
 from app.panels.message_bar import MessageBar
 from app.panels.status import StatusLine
+from app.player import Player
 from app.settings import last_folder, remember_folder, window_settings
 from app.texts import importing as texts
 from app.theme import STEP, theme
@@ -63,6 +68,7 @@ class ImportWindow(QWidget):
         self.draft.measured.connect(self._show_states)
         self.draft.failed.connect(self.message.say)
         self.draft.noted.connect(self.status.say)
+        self.player.noted.connect(self.status.say)
         self._add_keys()
         self.steps.setCurrentRow(0)
         self._show_states()
@@ -72,7 +78,12 @@ class ImportWindow(QWidget):
         self.markers = MarkersPage(self.draft, self.authoring)
         self.head = HeadPage(self.draft)
         self.mend = MendPage(self.draft)
-        return (self.files, self.markers, self.head, self.mend)
+        self.work = SpeechWork(self.draft)
+        self.player = Player(self.jobs, self)
+        self.sound = SoundPage(self.draft, self.work, self.player)
+        self.review = ReviewPage(self.draft, self.work, self.player)
+        self.build = BuildPage(self.draft, self.authoring)
+        return self.files, self.markers, self.head, self.mend, self.sound, self.review, self.build
 
     def _arrange(self) -> None:
         t = theme()
@@ -120,9 +131,12 @@ class ImportWindow(QWidget):
         column.addWidget(self.status)
 
     def _add_keys(self) -> None:
-        keys = {"Alt+Left": lambda: self.step(-1), "Alt+Right": lambda: self.step(1), "Ctrl+O": self.ask_load,
-                "Ctrl+S": self.ask_save, "Ctrl+Z": self.draft.undo_stack.undo,
-                "Ctrl+Shift+Z": self.draft.undo_stack.redo, "Ctrl+W": self.close}  # fmt: skip
+        undo = self.draft.undo_stack
+        keys = {
+            "Alt+Left": lambda: self.step(-1), "Alt+Right": lambda: self.step(1), "Ctrl+O": self.ask_load,
+            "Ctrl+S": self.ask_save, "Ctrl+Z": undo.undo, "Ctrl+Shift+Z": undo.redo, "Ctrl+W": self.close,
+            "Ctrl+Return": self.build.on_build,
+        }  # fmt: skip
         keys |= {f"Alt+{i + 1}": lambda i=i: self.steps.setCurrentRow(i) for i in range(len(self.pages))}
         for key, done in keys.items():
             QShortcut(QKeySequence(key), self, activated=done)
@@ -173,6 +187,7 @@ class ImportWindow(QWidget):
 
     def shut_down(self) -> None:
         """Stop all jobs, for good; the main window closes."""
+        self.player.pause()
         self.jobs.shut_down()
         self.close()
 
