@@ -12,7 +12,6 @@ from core.face.geodesic import components, seam_partners
 
 SKIN_PARTS = ("skin", "mouth_socket")
 JAW_PARTS = ("lower_teeth", "tongue")
-HEAD_PARTS = ("upper_teeth", "eye_left", "eye_right")
 
 # Sizes of the rules for pieces without a part, as fractions of the face's scale (its outer eye distance).
 MOUTH_DEPTH = 0.9
