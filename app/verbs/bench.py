@@ -130,6 +130,21 @@ def bench_size(
     _tell(answer, size_bench.as_table, json)
 
 
+@bench.command("animeme")
+def bench_animeme(
+    db: Database = None,
+    pictures: Annotated[Path | None, typer.Option(help="Folder for plots like the paper's figure 2, SVG.")] = None,
+    json: Json = False,
+) -> None:
+    """Measure animemes beside MMM and Cohen and Massaro's model on sentences held out, and how long training takes."""
+    from app import animeme_bench
+
+    with progress_bar("bench") as progress:
+        database = _open(db, progress)
+        answer = animeme_bench.bench_animemes(database, pictures, progress=progress.part(0.1, 1.0))
+    _tell(answer, animeme_bench.as_table, json)
+
+
 @bench.command("suspicion")
 def bench_suspicion(db: Database = None, json: Json = False) -> None:
     """Measure how well suspicion finds the demo corpus's planted faults, beside chance and plain distance."""

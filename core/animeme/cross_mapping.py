@@ -26,8 +26,8 @@ def solve_controls(
     ridge_mm2 : see `RIDGE_MM2`
     returns : float64, shape (F, U)
     """
-    frames = np.reshape(marker_displacements, (len(marker_displacements), -1))
     units = np.reshape(unit_displacements, (len(unit_displacements), -1))
+    frames = np.reshape(marker_displacements, (len(marker_displacements), units.shape[1]))
     return bounded_least_squares(units, frames, ridge_mm2 * units.shape[1] / 3.0)
 
 
@@ -38,7 +38,7 @@ def solve_shares(lip_displacements: np.ndarray, key_shapes: np.ndarray) -> np.nd
     returns : float64, shape (F, n_shapes)
     """
     shapes = np.reshape(key_shapes, (len(key_shapes), -1))
-    frames = np.reshape(lip_displacements, (len(lip_displacements), -1))
+    frames = np.reshape(lip_displacements, (len(lip_displacements), shapes.shape[1]))
     return bounded_least_squares(shapes, frames, 0.0, highest=np.inf)
 
 

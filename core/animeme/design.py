@@ -11,7 +11,7 @@ from core.animeme.dominance import dominance, dominance_slopes, held
 from core.animeme.form import AnimemeForm
 from core.animeme.utterances import Nearby, Utterances
 
-FAINTEST = 1e-5  # a phoneme with less dominance in a frame is left out of it
+_FAINTEST = 1e-5  # a phoneme whose dominance times its largest power is less in a frame is left out of it
 
 
 class Weights(NamedTuple):
@@ -60,6 +60,10 @@ class Scene:
         total = np.bincount(self.nearby.frame, ruling, self.n_frames) + 1e-12
         return Weights(ruling / total[self.nearby.frame], total)
 
+    def seen(self, weights: Weights) -> np.ndarray:
+        """Return which pairs count for anything, bool, shape (N,)."""
+        return weights.value * np.abs(self.powers).max(axis=1) > _FAINTEST
+
     def slopes(self, widths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of each pair's dominance by the logarithm of its σ1 and of its σ2, each of shape (N,)."""
         keep, reach = widths[:, self.phoneme]
@@ -69,7 +73,7 @@ class Scene:
     def matrix(self, weights: Weights) -> csr_matrix:
         """Rows are frames, columns the powers of each occurrence; times their coefficients it is equation 1."""
         n_powers = self.form.degree + 1
-        seen = weights.value > FAINTEST
+        seen = self.seen(weights)
         values = weights.value[seen, None] * self.powers[seen]
         columns = self.nearby.utterance[seen, None] * n_powers + np.arange(n_powers)
         stops = np.bincount(self.nearby.frame[seen], minlength=self.n_frames).cumsum() * n_powers

@@ -11,6 +11,7 @@ from core.animeme.cross_mapping import RIDGE_MM2, solve_controls, solve_shares, 
 from core.animeme.examples import Example
 from core.animeme.key_shapes import key_lip_shapes
 from core.errors import UserFacingError
+from core.evaluation.measures import lip_gap_mm
 from core.face.face import Face
 from core.motion.database import MotionDatabase
 from core.motion.head_space import in_head_space
@@ -95,3 +96,22 @@ def face_controls(
     names, units = units_at_markers(face, database.markers)
     rest = database.markers.rest
     return names, lambda positions: solve_controls(positions - rest, units, ridge_mm2)
+
+
+def mouth_measures(database: MotionDatabase) -> tuple[tuple[str, ...], Mapping]:
+    """Take lip gap and mouth width for controls, mm from rest: few, and everybody knows what they mean.
+
+    Raises `UserFacingError` when the markers do not show them.
+    """
+    landmarks = ("upper_lip", "lower_lip", "mouth_corner_left", "mouth_corner_right")
+    marks = [database.markers.landmark(name) for name in landmarks]
+    if None in marks:
+        raise UserFacingError(f"The markers of '{database.name}' do not show how the mouth opens.")
+    upper, lower, left, right = marks
+
+    def measured(positions: np.ndarray) -> np.ndarray:
+        width = np.linalg.norm(positions[:, left] - positions[:, right], axis=1)
+        return np.stack([lip_gap_mm(positions, upper, lower), width], axis=1)
+
+    rest = measured(database.markers.rest[None])
+    return ("lip gap", "mouth width"), lambda positions: measured(positions) - rest

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse import csr_matrix
 
-from core.animeme.design import FAINTEST, Scene
+from core.animeme.design import Scene
 
 _DENSE_COLUMNS = 500  # up to here a dense product is quicker than one of sparse matrices
 
@@ -76,7 +76,7 @@ class Regression:
         scene, n_said = self.scene, len(self.said)
         weights, n_widths = scene.weights(widths), 2 * n_said
         by_keep, by_reach = scene.slopes(widths)
-        seen = weights.value > FAINTEST
+        seen = scene.seen(weights)
         frame, row = scene.nearby.frame[seen], self._row[scene.phoneme[seen]]
         place = np.concatenate([frame * n_widths + row, frame * n_widths + n_said + row])
         shapes = scene.shapes(self.shared @ solved.coefficients)[seen]
