@@ -1,7 +1,7 @@
 """The first sheet of an .xlsx workbook as rows of texts.
 
 Written out here, on zipfile and the standard XML parser, rather than left to openpyxl: two small members are all that
-is wanted, and of a file from elsewhere no more than 16 MiB each is unpacked, no document type is obeyed, and no row or
+is wanted, and of a file from elsewhere no more than 4 MiB each is unpacked, no document type is obeyed, and no row or
 column is made because a cell's address names it. Format: ECMA-376, part 1, sections 18.3 and 18.4.
 """
 
@@ -18,7 +18,7 @@ from core.errors import UserFacingError
 _MAIN = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
 _STRINGS = "xl/sharedStrings.xml"
 _LARGEST_FILE = 16 << 20
-_LARGEST_MEMBER = 16 << 20
+_LARGEST_MEMBER = 4 << 20
 _MOST_ROWS, _MOST_COLUMNS = 20_000, 256
 _ADDRESS = re.compile(r"([A-Z]{1,3})(\d{1,7})")
 _UNREADABLE = (

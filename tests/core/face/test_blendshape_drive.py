@@ -9,6 +9,8 @@ from core.face.face import Face
 from core.face.marker_placement import MarkerPlacement
 from core.face.marker_units import load_marker_units, marker_units_of
 from core.motion.blendshape_track import ARKIT_UNITS, BlendshapeTrack
+from core.motion.readers.blendshape_files import read_blendshapes
+from core.motion.shape_mapping import mapped, read_shape_mapping
 
 
 def small_face() -> tuple[Face, MarkerPlacement]:
@@ -66,3 +68,21 @@ def test_shapes_that_no_unit_of_the_face_matches_are_refused():
     assert "maps" in caught.value.remedy
     with pytest.raises(UserFacingError, match="smirk"):
         BlendshapeDrive(face, strange.names)
+
+
+def test_facegood_opens_the_mouth_of_the_default_face_as_it_opens_its_own(shared_data):
+    """Its own jaw weight against the gap between the lips' markers, which the mapping must carry over."""
+    folder = shared_data("facegood")
+    names = folder / "shirley_1015_bs_name.npy"
+    own = read_blendshapes(folder / "bs_value" / "bs_value_1114_3_15.npy", names, 30.0)
+    moving = mapped(own, read_shape_mapping(folder / "Voice2Face_blendshape2ARkit.xlsx"))
+    units = load_marker_units()
+    motion = markers_of_blendshapes(moving, units)
+    row = {name: k for k, name in enumerate(motion.names)}
+    upper, lower = (units.markers.landmarks[name] for name in ("upper_lip", "lower_lip"))
+    gap_mm = motion.positions[:, row[upper], 1] - motion.positions[:, row[lower], 1]
+    opened = own.weights[:, own.names.index("mouth_stretch_c")]
+    assert np.corrcoef(gap_mm, opened)[0, 1] > 0.9
+    assert np.ptp(gap_mm) > 5.0
+    forehead = motion.positions[:, row["forehead_mid"]]
+    assert np.ptp(forehead, axis=0).max() < 0.5
