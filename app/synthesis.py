@@ -13,10 +13,11 @@ from app.export import VideoSettings, check_outputs, rounded_seconds, write_outp
 from app.speech import emotion_modifiers, load_speech
 from core.document.parts import FaceChoice
 from core.errors import UserFacingError
+from core.motion.database import MotionDatabase
 from core.motion.stored_weights import named_weights
 from core.progress import SILENT, Progress
 from core.search.best_path import MotionPath
-from core.synthesis.engine import SpeechInput
+from core.synthesis.engine import MotionEngine, SpeechInput
 from core.synthesis.registry import DEFAULT_ENGINE, engine_kind, make_engine
 from gpu.device import open_kernels
 
@@ -45,26 +46,49 @@ class SynthesisJob:
     video: VideoSettings = field(default_factory=VideoSettings)
     lexicon: Path | None = None
     strict: bool = False
+    language: str | None = None
+    phone_table: str | None = None
 
 
-def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
-    """Do the job and return the object of ``--json``; raises `UserFacingError` before anything is half-written."""
+@dataclass(frozen=True)
+class Ready:
+    """What a job needs opened, and many jobs can share: the database, a backend and the engine on both."""
+
+    database: MotionDatabase
+    engine: MotionEngine
+    backend_sentence: str
+    on_numpy: bool
+
+
+def made_ready(job: SynthesisJob, progress: Progress = SILENT) -> Ready:
+    """Open what ``job`` needs besides its files; raises `UserFacingError`."""
+    database = open_named(job.database, progress)
+    weights = None if job.weights == "tuned" else named_weights(job.weights, database)
+    kernels, backend_sentence = open_kernels(job.backend)
+    # a backend that was asked for by name shall do the work; all ways give the same path
+    engine = make_engine(job.engine, database, kernels, weights, exhaustive=job.backend != "auto")
+    return Ready(database, engine, backend_sentence, kernels.report.backend == "numpy" and not kernels.report.lost)
+
+
+def run(job: SynthesisJob, progress: Progress = SILENT, ready: Ready | None = None) -> dict[str, object]:
+    """Do the job and return the object of ``--json``; raises `UserFacingError` before anything is half-written.
+
+    ready : what was made ready for this job, or one with the same database, engine, weights and backend
+    """
     kind = engine_kind(job.engine)
     check_outputs(list(job.outputs))
     _check_inputs(job)
     pins = _pins(job.pins)
     if pins and not kind.searches:
         raise UserFacingError(f"The engine '{job.engine}' takes no motion nodes, so none can be pinned.")
-    database = open_named(job.database, progress.part(0.0, 0.1))
-    weights = None if job.weights == "tuned" else named_weights(job.weights, database)
-    kernels, backend_sentence = open_kernels(job.backend)
+    ready = ready or made_ready(job, progress.part(0.0, 0.1))
+    database, engine = ready.database, ready.engine
 
     began = time.perf_counter()
-    speech = load_speech(job.audio, job.text, job.phones, job.lexicon, job.strict, progress.part(0.1, 0.25))
+    speech = load_speech(job.audio, job.text, job.phones, job.lexicon, job.strict, progress.part(0.1, 0.25),
+                         job.language, job.phone_table)  # fmt: skip
     modifiers = emotion_modifiers(job.emotion, job.emotions, speech.audio.duration_s)
     aligned_s = time.perf_counter() - began
-    # a backend that was asked for by name shall do the work; all ways give the same path
-    engine = make_engine(job.engine, database, kernels, weights, exhaustive=job.backend != "auto")
     asked = time.perf_counter()
     question = SpeechInput(speech.transcript, modifiers, pins, audio=speech.audio)
     answer = engine.synthesise(question, progress.part(0.25, 0.5))
@@ -73,8 +97,8 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
 
     began = time.perf_counter()
     warnings = list(speech.transcript.warnings)
-    if kind.searches and job.backend == "auto" and kernels.report.backend == "numpy" and not kernels.report.lost:
-        warnings.append(backend_sentence)
+    if kind.searches and job.backend == "auto" and ready.on_numpy:
+        warnings.append(ready.backend_sentence)
     warnings += answer.warnings
     face = FaceChoice(job.face, None if job.marker_file is None else str(job.marker_file))
     stage = progress.part(0.5, 1.0)
@@ -88,7 +112,7 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
         "cost": None if path is None else path.cost,
         "lower_bound": None if path is None else path.lower_bound,
         "optimal": None if path is None else path.is_optimal,
-        "backend": backend_sentence,
+        "backend": ready.backend_sentence,
         "device": None if path is None else {**answer.device.as_dict(), "method": answer.method},
         "engine": job.engine,
         "text": speech.text,
@@ -100,7 +124,7 @@ def run(job: SynthesisJob, progress: Progress = SILENT) -> dict[str, object]:
 
 def _check_inputs(job: SynthesisJob) -> None:
     given = (job.audio, job.text, job.phones, job.database, job.emotions, job.marker_file, job.key_poses, job.lexicon,
-             job.face, job.video.texture)  # fmt: skip
+             job.phone_table, job.face, job.video.texture)  # fmt: skip
     read = {os.path.realpath(path) for path in given if path is not None}
     if job.marker_file is not None and not job.marker_file.is_file():
         raise UserFacingError(f"There is no marker file '{job.marker_file}'.")

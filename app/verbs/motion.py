@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from app.terminal import note, print_json, progress_bar, warn
-from app.verbs.options import OUTPUTS, Background, Database, Json, KeyPoses, Lexicon, Span, Strict
+from app.verbs.options import OUTPUTS, Background, Database, Json, KeyPoses, Language, Lexicon, PhoneTable, Span, Strict
+from core.errors import UserFacingError
 
 
 def demo(
@@ -30,8 +31,12 @@ def demo(
 
 
 def synth(
-    audio: Annotated[Path, typer.Argument(help="WAV, FLAC or OGG.")],
-    output: Annotated[list[Path], typer.Option("--output", "-o", help=OUTPUTS)],
+    audio: Annotated[Path | None, typer.Argument(help="WAV, FLAC or OGG.")] = None,
+    output: Annotated[list[Path] | None, typer.Option("--output", "-o", help=OUTPUTS)] = None,
+    batch: Annotated[Path | None, typer.Option(help="CSV `audio,text,emotion,output`, a line each.")] = None,
+    failures: Annotated[Path | None, typer.Option(help="With --batch: write what failed and why (.csv).")] = None,
+    jobs: Annotated[int, typer.Option(min=-1, help="With --batch: processes; -1 is one a core.")] = -1,
+    cluster: Annotated[str | None, typer.Option(metavar="tcp://HOST:PORT", help="A Dask scheduler.")] = None,
     text: Annotated[str | None, typer.Option(help="What is said, or a text file with it.")] = None,
     phones: Annotated[Path | None, typer.Option(help="TextGrid, label or `start end phone` file instead.")] = None,
     db: Database = None,
@@ -56,26 +61,39 @@ def synth(
     background: Background = None,
     span: Span = None,
     lexicon: Lexicon = None,
+    language: Language = None,
+    phone_table: PhoneTable = None,
     strict: Strict = False,
     json: Json = False,
 ) -> None:
     """Animate speech: find the best path through the database and write films or markers."""
+    from app.batch import BatchJob, in_words, run_batch
     from app.export import VideoSettings, background_colour, frame_rate, span_of_time, video_size
     from app.synthesis import SynthesisJob, run
 
+    if (audio is None) == (batch is None) or (output is None) != (batch is not None):
+        raise UserFacingError("Name a sound and its outputs, or a table of them with --batch.")
     job = SynthesisJob(
-        audio=audio, outputs=tuple(output), text=text, phones=phones, database=db, emotion=emotion, emotions=emotions,
-        engine=engine, face=face, marker_file=markers, key_poses=poses, csv_is_live_link=engine == "animeme",
-        backend=backend, pins=tuple(pin or ()),
+        audio=audio or batch, outputs=tuple(output or ()), text=text, phones=phones, database=db, emotion=emotion,
+        emotions=emotions, engine=engine, face=face, marker_file=markers, key_poses=poses,
+        csv_is_live_link=engine == "animeme", backend=backend, pins=tuple(pin or ()),
         weights=weights,
         video=VideoSettings(frame_rate(fps), *video_size(size), style, start_frame, head, gaze, texture,
                             None if background is None else background_colour(background),
                             None if span is None else span_of_time(span)),
-        lexicon=lexicon, strict=strict,
+        lexicon=lexicon, strict=strict, language=language, phone_table=phone_table,
     )  # fmt: skip
     with progress_bar("synth") as progress:
-        answer = run(job, progress)
-    _tell_written(answer, json)
+        if batch is None:
+            answer = run(job, progress)
+        else:
+            answer = run_batch(BatchJob(batch, job, None, failures, jobs or -1, cluster), progress)
+    if batch is None:
+        _tell_written(answer, json)
+    elif json:
+        print_json(answer)
+    else:
+        print(in_words(answer))
 
 
 def export_project(

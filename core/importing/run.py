@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import shutil
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -118,8 +117,6 @@ def forget(plan: ImportPlan, folder: Path) -> None:
     """Remove the finished sentences of ``plan`` from ``folder``."""
     for sentence in plan.sentences:
         cache_path(folder, plan, sentence).unlink(missing_ok=True)
-    with contextlib.suppress(OSError):
-        folder.rmdir()
 
 
 def _longest_gap_s(plan: ImportPlan) -> float:
