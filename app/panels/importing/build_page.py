@@ -60,8 +60,6 @@ class BuildPage(Page):
         self.hold_out = QComboBox(toolTip=texts.HOLD_OUT_TIP)
         for key, text in texts.HOLD_OUTS.items():
             self.hold_out.addItem(text, key)
-        for box in (self.rate, self.dims):
-            box.setButtonSymbols(QSpinBox.ButtonSymbols.NoButtons)
         where, how = QHBoxLayout(), QHBoxLayout()
         where.addWidget(self.path, 1)
         where.addWidget(self.browse)
@@ -86,7 +84,7 @@ class BuildPage(Page):
         self.body.addLayout(row)
         self.words = QPlainTextEdit(readOnly=True)
         self.words.setFixedHeight(_WORDS_PX)
-        self.table = PlainTable(texts.REPORT_COLUMNS, (), (120, 52, 52, 56, 56, 76, 76, 76, 92, 0))
+        self.table = PlainTable(texts.REPORT_COLUMNS, (), (120, 56, 56, 60, 60, 84, 76, 84, 92, 0))
         self.body.addWidget(self.words)
         self.body.addWidget(self.table, 1)
         self.body.addStretch(0)

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QComboBox, QFileDialog, QHBoxLayout, QPushButton
 from app.icons import dot
 from app.panels.importing.draft import ImportDraft
 from app.panels.importing.page import Page
+from app.panels.importing.reading_row import ReadingRow
 from app.panels.importing.sentence_table import SentenceTable
 from app.panels.pane import label
 from app.settings import last_folder, remember_folder, window_settings
@@ -26,6 +27,8 @@ class FilesPage(Page):
         super().__init__(draft, texts.FILES, texts.FILES_HINT, texts.FILES_EMPTY)
         self._settings = window_settings()
         self.setAcceptDrops(True)
+        self.reading = ReadingRow(draft)
+        self.body.addWidget(self.reading)
         self.table = SentenceTable(draft)
         self.body.addWidget(self.table, 1)
         self.found = label()
@@ -66,6 +69,7 @@ class FilesPage(Page):
 
     def refresh(self) -> None:
         """See `Page.refresh`."""
+        self.reading.renew()
         self.table.sentences.renew()
         self._enable()
         facts = [self.draft.facts[s.name] for s in self.draft.sentences if s.name in self.draft.facts]

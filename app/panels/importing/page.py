@@ -138,4 +138,5 @@ def themed_plot(left: str, bottom: str = "") -> pg.PlotWidget:
     for side in ("left", "bottom"):
         plot.getAxis(side).setPen(colour(theme().line))
         plot.getAxis(side).setTextPen(colour(theme().dim))
+        plot.getAxis(side).enableAutoSIPrefix(False)
     return plot

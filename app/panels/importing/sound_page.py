@@ -91,7 +91,7 @@ class SoundPage(Page):
         self.legend = label("", "plain")
         self.legend.setTextFormat(Qt.TextFormat.RichText)
         column.addWidget(self.legend)
-        self.plot = themed_plot(texts.OPENING_AXIS)
+        self.plot = themed_plot(texts.OPENING_AXIS, texts.TIME_AXIS)
         self.loud_view = pg.ViewBox(enableMouse=False, enableMenu=False)
         self.plot.scene().addItem(self.loud_view)
         self.loud_view.setXLink(self.plot.plotItem)
@@ -106,7 +106,6 @@ class SoundPage(Page):
         self.slider = QSlider(Qt.Orientation.Horizontal, minimum=-_MOST_MS, maximum=_MOST_MS, toolTip=texts.SHIFT_TIP)
         self.slider.setPageStep(10)
         self.shift = QDoubleSpinBox(decimals=0, minimum=-10_000, maximum=10_000, suffix=" ms", toolTip=texts.SHIFT_TIP)
-        self.shift.setButtonSymbols(QDoubleSpinBox.ButtonSymbols.NoButtons)
         self.shift.setKeyboardTracking(False)
         self.all = QPushButton(texts.SHIFT_ALL, toolTip=texts.SHIFT_ALL_TIP)
         for widget in (self.play, label(texts.SHIFT, "plain"), self.slider, self.shift, self.all):
@@ -212,7 +211,7 @@ class SoundPage(Page):
             self.legend.setText(texts.NOTHING_HEARD.format(name=sentence.name))
             return
         out_s = self.work.taken_out_s(sentence)
-        mouth = texts.SOUND_LEGEND_MOUTH.format(ms=-1000 * out_s)
+        mouth = texts.SOUND_LEGEND_MOUTH.format(ms=round(-1000 * out_s) + 0.0)
         self.legend.setText(f"<span style='color:{theme().dim}'>█ {texts.SOUND_LEGEND_LOUD}</span> &nbsp; "
                             f"<span style='color:{theme().accent}'>━ {mouth}</span>")  # fmt: skip
         if self._heard is not None and self._heard.name == sentence.name:

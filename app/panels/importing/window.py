@@ -87,6 +87,13 @@ class ImportWindow(QWidget):
 
     def _arrange(self) -> None:
         t = theme()
+        # the platform's arrows and empty check boxes do not show on our ground
+        self.setStyleSheet(
+            "QSpinBox::up-button, QSpinBox::down-button, QDoubleSpinBox::up-button, QDoubleSpinBox::down-button"
+            " { width: 0; border: none; }"
+            f"QListWidget::indicator {{ width: 11px; height: 11px; border: 1px solid {t.dim}; border-radius: 2px; }}"
+            f"QListWidget::indicator:checked {{ background: {t.accent}; border-color: {t.accent}; }}"
+        )
         self.steps.setFixedWidth(_STEPS_PX)
         self.steps.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.steps.setStyleSheet(
@@ -152,8 +159,10 @@ class ImportWindow(QWidget):
     def on_step(self, row: int) -> None:
         """Show another page."""
         self._stack.setCurrentIndex(row)
+        last = len(self.pages) - 1
         self.back_button.setEnabled(row > 0)
-        self.next_button.setEnabled(row < len(self.pages) - 1)
+        self.next_button.setEnabled(row < last)
+        self.next_button.setText(texts.NEXT_STEP.format(title=self.pages[min(row + 1, last)].title))
 
     def step(self, by: int) -> None:
         """Go back or forth."""
