@@ -17,10 +17,10 @@ import numpy as np
 
 from core.errors import UserFacingError
 from core.media.swap_in import swapped_in
+from core.motion.length_units import MM_PER_UNIT, mm_per
 
 _BLOCK = 512
 _INTEL, _DEC, _MIPS = 84, 85, 86
-_MM_PER_UNIT = {"": 1.0, "mm": 1.0, "cm": 10.0, "dm": 100.0, "m": 1000.0, "in": 25.4, "inch": 25.4, "inches": 25.4}
 _HIGHEST_RATE_HZ = 10_000.0
 # a count that a header's 16 bits cannot hold
 _TOO_MANY = 65_535
@@ -65,10 +65,12 @@ def write_c3d(path: str | Path, positions: np.ndarray, names: Sequence[str], rat
             raise OSError("the disk is full")
 
 
-def read_c3d(path: str | Path) -> tuple[np.ndarray, tuple[str, ...], float]:
+def read_c3d(path: str | Path, unit: str | None = None) -> tuple[np.ndarray, tuple[str, ...], float]:
     """Return positions (float32, shape (F, K, 3), mm, NaN where missing), marker names and frames a second.
 
     Reads integer and float files of Intel, DEC and MIPS machines. A label that repeats gets a number.
+
+    unit : a key of `core.motion.length_units.MM_PER_UNIT`; it wins over the file's own, and a file without one is in mm
 
     Raises `UserFacingError` for what is missing, empty, truncated, or no C3D of a known unit.
     """
@@ -78,7 +80,7 @@ def read_c3d(path: str | Path) -> tuple[np.ndarray, tuple[str, ...], float]:
     except OSError as error:
         raise UserFacingError(f"'{path}' cannot be read: {error.strerror or error}.") from error
     try:
-        return _read(data)
+        return _read(data, None if unit is None else mm_per(unit, path))
     except _Damaged as damage:
         raise UserFacingError(f"The C3D file '{path}' {damage}.") from damage
 
@@ -93,7 +95,7 @@ class _Layout:
     rate_hz: float
 
 
-def _read(data: bytes) -> tuple[np.ndarray, tuple[str, ...], float]:
+def _read(data: bytes, mm: float | None) -> tuple[np.ndarray, tuple[str, ...], float]:
     if not data:
         raise _Damaged("is empty")
     if len(data) < 2 * _BLOCK or data[1] != 0x50 or data[0] < 1:
@@ -106,10 +108,11 @@ def _read(data: bytes) -> tuple[np.ndarray, tuple[str, ...], float]:
         raise _Damaged("names no machine that is known")
     parameters = _parameters(data, section, machine)
     layout = _layout(data, parameters, machine)
-    unit = _texts(parameters.get(("POINT", "UNITS")))[:1] or [""]
-    mm = _MM_PER_UNIT.get(unit[0].lower())
     if mm is None:
-        raise _Damaged(f"is measured in '{unit[0]}', which is no unit of length that is known")
+        unit = (_texts(parameters.get(("POINT", "UNITS")))[:1] or [""])[0]
+        mm = MM_PER_UNIT.get(unit.lower(), None if unit else 1.0)
+    if mm is None:
+        raise _Damaged(f"is measured in '{unit}', which is no unit of length that is known")
     return _positions(data, layout, machine, mm), _names(parameters, layout.n_points), layout.rate_hz
 
 

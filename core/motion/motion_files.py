@@ -8,6 +8,7 @@ import numpy as np
 
 from core.errors import UserFacingError
 from core.motion.c3d import read_c3d, write_c3d
+from core.motion.frame_rate import check_rate_hz
 from core.motion.marker_csv import write_markers_csv
 from core.motion.motion_track import MotionTrack, ReadOptions
 from core.motion.readers.blendshape_files import is_blendshape_table
@@ -36,7 +37,9 @@ def read_takes(path: str | Path, options: ReadOptions | None = None) -> tuple[Mo
     if not path.is_file():
         raise UserFacingError(f"There is no motion file '{path}'.")
     if suffix == ".c3d":
-        return (MotionTrack(*read_c3d(path)),)
+        positions, names, rate_hz = read_c3d(path, options.unit)
+        rate_hz = rate_hz if options.rate_hz is None else check_rate_hz(options.rate_hz, path)
+        return (MotionTrack(positions, names, rate_hz),)
     if suffix == ".trc":
         return (read_trc(path, options),)
     if suffix == ".npz":

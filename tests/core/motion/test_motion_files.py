@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from core.errors import UserFacingError
-from core.motion.motion_files import read_motion, write_c3d, write_markers_csv
+from core.motion.motion_files import read_motion, write_c3d, write_markers_csv, write_trc
+from core.motion.motion_track import ReadOptions
 
 TAKES = Path(__file__).resolve().parents[3] / "../shared/data/animface-mocap"
 NAMES = ("nose", "lip", "chin")
@@ -92,6 +93,14 @@ def test_lengths_in_other_units_become_millimetres(tmp_path, unit, factor):
     path.write_bytes(path.read_bytes().replace(b"\x02mm", bytes([len(unit)]) + unit.encode().ljust(2), 1))
     positions, _, _ = read_motion(path)
     np.testing.assert_allclose(positions, motion() * factor, rtol=1e-5)
+
+
+@pytest.mark.parametrize("name", ["m.c3d", "m.trc", "m.csv"])
+def test_what_the_user_says_wins_over_the_file(tmp_path, name):
+    {".c3d": write_c3d, ".trc": write_trc, ".csv": write_markers_csv}[name[1:]](tmp_path / name, motion(), NAMES, 60.0)
+    positions, _, rate_hz = read_motion(tmp_path / name, ReadOptions(rate_hz=50.0, unit="cm"))
+    np.testing.assert_allclose(positions, 10 * motion(), rtol=1e-4, atol=1e-3)
+    assert rate_hz == 50.0
 
 
 def handmade_c3d(machine: int) -> bytes:
