@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import functools
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from app.child_process import run_apart
@@ -40,6 +41,8 @@ def load_speech(
     lexicon: Path | None = None,
     strict: bool = False,
     progress: Progress = SILENT,
+    language: str | None = None,
+    phone_table: str | Path | None = None,
 ) -> LoadedSpeech:
     """Load a sound file, unless the sound is at hand, and align it.
 
@@ -47,30 +50,53 @@ def load_speech(
     phones : a TextGrid, label or plain phone file instead; without either the speech is recognised first
     lexicon : pronunciations of names and coined words
     strict : refuse phones that are not in our set instead of taking the nearest
+    language : what ``text`` is written in, as espeak-ng names it; English when None
+    phone_table : what the names in ``phones`` stand for; see `core.speech.phone_table.read_phone_table`
     Raises `UserFacingError` naming the file that is wrong.
     """
+    from core.speech.phone_table import read_phone_table
     from core.speech.transcript_files import read_transcript
 
     if text is not None and phones is not None:
         raise UserFacingError("A text and a phone file were given; one of them says what is spoken.")
+    if phone_table is not None and phones is None:
+        raise UserFacingError("A phone table was given, but no phones that it would tell of.")
+    if language is not None and text is None:
+        raise UserFacingError("Speech is recognised in English only.", "Give its text, or its phones in a TextGrid.")
     audio = sound if isinstance(sound, Audio) else load_audio(sound)
     if phones is not None:
-        transcript = read_transcript(phones, audio.duration_s, strict=strict)
+        table, warnings = ({}, ()) if phone_table is None else read_phone_table(phone_table)
+        transcript = read_transcript(phones, audio.duration_s, strict=strict, table=table)
+        transcript = replace(transcript, warnings=(*warnings, *transcript.warnings))
         return LoadedSpeech(audio, transcript, " ".join(w.word for w in transcript.words), False)
     words = read_lexicon(lexicon) if lexicon is not None else None
     if text is not None:
         said = read_text(text)
+        if language is not None:
+            return LoadedSpeech(audio, _aligned_abroad(audio, said, language, words, progress), said, False)
         return LoadedSpeech(audio, _aligned(audio, said, words, progress), said, False)
     said, transcript = _recognised(audio, words, progress)
     return LoadedSpeech(audio, transcript, said, True)
 
 
-def _aligned(audio: Audio, text: str, lexicon: Lexicon | None, progress: Progress) -> Transcript:
+def _aligned(
+    audio: Audio, text: str, lexicon: Lexicon | None, progress: Progress, words: list[str] | None = None
+) -> Transcript:
     from core.speech.aligner import align
 
     if audio.duration_s <= _LONGEST_ALIGNED_HERE_S:
-        return align(audio, text, lexicon, progress)
-    return run_apart(align, (audio, text, lexicon), progress, _DIED)
+        return align(audio, text, lexicon, progress, words)
+    return run_apart(functools.partial(align, words=words), (audio, text, lexicon), progress, _DIED)
+
+
+def _aligned_abroad(audio: Audio, text: str, language: str, lexicon: Lexicon | None, progress: Progress) -> Transcript:
+    from core.speech.foreign_text import espeak_pronunciations, foreign_words
+
+    words = foreign_words(text)
+    known = lexicon or {}
+    pronounced, warnings = espeak_pronunciations([word for word in words if word.lower() not in known], language)
+    transcript = _aligned(audio, text, {**pronounced, **known}, progress, words)
+    return replace(transcript, warnings=(*warnings, *transcript.warnings))
 
 
 def _recognised(audio: Audio, lexicon: Lexicon | None, progress: Progress) -> tuple[str, Transcript]:

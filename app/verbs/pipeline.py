@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from app.terminal import print_json, progress_bar, warn
-from app.verbs.options import Background, Database, Json, KeyPoses, Lexicon, Span, Strict
+from app.verbs.options import Background, Database, Json, KeyPoses, Language, Lexicon, PhoneTable, Span, Strict
 
 _OUTPUTS = (
     ".csv (Live Link Face), .curves.csv, .json, .glb, .usd (.points.usd: a point cache), .avi, .mp4, .png or .c3d; "
@@ -35,6 +35,8 @@ def lipsync(
     background: Background = None,
     span: Span = None,
     lexicon: Lexicon = None,
+    language: Language = None,
+    phone_table: PhoneTable = None,
     strict: Strict = False,
     json: Json = False,
 ) -> None:
@@ -50,7 +52,7 @@ def lipsync(
     job = SynthesisJob(
         audio=audio, outputs=tuple(output), text=text, phones=phones, database=db, emotion=emotion, emotions=emotions,
         engine="animeme", face=face, key_poses=poses, csv_is_live_link=True, video=video, lexicon=lexicon,
-        strict=strict,
+        strict=strict, language=language, phone_table=phone_table,
     )  # fmt: skip
     with progress_bar("lipsync") as progress:
         _tell_written(run(job, progress), json)

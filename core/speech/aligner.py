@@ -55,10 +55,14 @@ def said_as(word: str) -> tuple[str, ...]:
     return tuple(phones_named(variants[0], [word] * len(variants[0]))[0])
 
 
-def align(audio: Audio, text: str, lexicon: Lexicon | None = None, progress: Progress = SILENT) -> Transcript:
+def align(
+    audio: Audio, text: str, lexicon: Lexicon | None = None, progress: Progress = SILENT,
+    words: Sequence[str] | None = None,
+) -> Transcript:  # fmt: skip
     """Place ``text`` in ``audio``: words, and their phones from a dictionary, timed by forced alignment.
 
     lexicon : the user's own pronunciations (`core.speech.lexicon.read_lexicon`)
+    words : the words that ``text`` is said in, where it is not English; ``lexicon`` has all of them
 
     The whole text is first placed word by word; then the phones, in pieces cut at pauses. Words that had to be
     guessed, marks of a script that nobody says, words that are hardly heard and loud sound that the text leaves out
@@ -66,7 +70,7 @@ def align(audio: Audio, text: str, lexicon: Lexicon | None = None, progress: Pro
     Raises `UserFacingError` when the text has no word, the sound no speech, or the two do not fit: it then says
     which words are not heard, and where.
     """
-    words = spoken_words(text)
+    words = spoken_words(text) if words is None else list(words)
     if not words:
         raise UserFacingError("The text has no word to speak.")
     sound = SphinxSound(audio)

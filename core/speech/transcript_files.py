@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.errors import UserFacingError
 from core.speech.label_file import parse_labels
 from core.speech.phone_names import is_ipa, phone_named, phones_named
+from core.speech.phone_table import PhoneTable, by_table
 from core.speech.phoneme import PAU
 from core.speech.text_file import read_text
 from core.speech.textgrid import IntervalTier, parse_textgrid
@@ -28,11 +29,14 @@ _NO_WORD = re.compile(r"|sil|sp|pau|#|_|<.*>|\[.*\]")
 _LEAST_SHARE_OF_PHONES = 0.9
 
 
-def read_transcript(path: str | Path, duration_s: float, strict: bool = False) -> Transcript:
+def read_transcript(
+    path: str | Path, duration_s: float, strict: bool = False, table: PhoneTable | None = None
+) -> Transcript:
     """Read a Praat TextGrid (long or short text), a Festival/xwaves or HTK label file, or ``start end phone`` lines.
 
     duration_s : length of the sound it belongs to
     strict : refuse phones that are not in our set, instead of taking the nearest with a warning
+    table : what the names of another phone set stand for; names that it lacks are read as ARPAbet, IPA or Festival's
 
     A TextGrid must end within 0.25 s of the sound, for it holds its silences too. A label file may end earlier when
     its last label is silence, or, with a warning, when it marks no silence at all; none may end later.
@@ -41,7 +45,7 @@ def read_transcript(path: str | Path, duration_s: float, strict: bool = False) -
     name = f"'{path}'"
     text = read_text(path, "transcript")
     if "ooTextFile" in text[:200] or Path(path).suffix.lower() == ".textgrid":
-        written = _from_textgrid(text, name)
+        written = _from_textgrid(text, name, table or {})
     elif "\0" in text or text.startswith("ooBinary"):
         raise UserFacingError(f"{name} is not text.", "Save it as a TextGrid text file or a label file.")
     else:
@@ -49,6 +53,8 @@ def read_transcript(path: str | Path, duration_s: float, strict: bool = False) -
         written = _Written(labels, (), labels[-1].end_s if labels else 0.0, holds_all_silence=False)
     check_order(written.phones)
     check_order(written.words)
+    if table:
+        written = replace(written, phones=tuple(by_table(written.phones, table)))
     ours, warnings = phones_named([p.name for p in written.phones], [p.place for p in written.phones], strict)
     if all(phone == PAU for phone in ours):
         raise UserFacingError(f"{name} holds no phones.")
@@ -72,29 +78,29 @@ class _Written:
     holds_all_silence: bool
 
 
-def _from_textgrid(text: str, name: str) -> _Written:
+def _from_textgrid(text: str, name: str, table: PhoneTable) -> _Written:
     tiers = parse_textgrid(text, name)
-    phones = _tier_of_phones(tiers, name)
+    phones = _tier_of_phones(tiers, name, table)
     words = next((t.labels for t in tiers if t is not phones and _WORD_TIER.search(t.name.lower())), ())
     return _Written(phones.labels, words, max(phones.end_s, phones.labels[-1].end_s), holds_all_silence=True)
 
 
-def _tier_of_phones(tiers: Sequence[IntervalTier], name: str) -> IntervalTier:
+def _tier_of_phones(tiers: Sequence[IntervalTier], name: str, table: PhoneTable) -> IntervalTier:
     filled = [tier for tier in tiers if any(label.name for label in tier.labels)]
     if not filled:
         raise UserFacingError(f"{name} has no tier of intervals with labels.")
     for tier in filled:
         if _PHONE_TIER.search(tier.name.lower()):
             return tier
-    likely = max(filled, key=_share_of_phones)
-    if _share_of_phones(likely) < _LEAST_SHARE_OF_PHONES:
+    likely = max(filled, key=lambda tier: _share_of_phones(tier, table))
+    if _share_of_phones(likely, table) < _LEAST_SHARE_OF_PHONES:
         found = ", ".join(f"'{tier.name}'" for tier in filled)
         raise UserFacingError(f"{name} has no tier of phones; it has {found}.", "Name the tier 'phones'.")
     return likely
 
 
-def _share_of_phones(tier: IntervalTier) -> float:
-    names = [label.name for label in tier.labels if label.name]
+def _share_of_phones(tier: IntervalTier, table: PhoneTable) -> float:
+    names = [label.name for label in by_table(tier.labels, table) if label.name]
     return sum(_is_phone(name, is_ipa(names)) for name in names) / len(names)
 
 
