@@ -6,7 +6,6 @@ import contextlib
 import os
 import threading
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -40,20 +39,22 @@ def bench_size(
 def bench_build(source: MotionDatabase, n_frames: int, path: Path, progress: Progress = SILENT) -> dict[str, object]:
     """Build ``source``, repeated with variation to ``n_frames``, at ``path``, and say what it took.
 
-    ``seconds`` by stage; ``peak_mb`` is the largest sum of resident sizes of this process and its workers, sampled
-    five times a second: memory that they share is counted for each, so it is no less than what was taken.
+    ``stages_s`` are seconds by stage; ``cpu_s`` is processor time of all processes, which other work on the machine
+    disturbs less; ``peak_mb`` is the largest sum of resident sizes of this process and its workers, sampled five times
+    a second: memory that they share is counted for each, so it is no less than what was taken.
     """
     from core.motion.build import build_database
     from core.motion.repeated_corpus import repeated_corpus
 
     stages = _Stages(progress)
-    with _family_peak() as peak:
+    with _Family() as family:
         began = time.perf_counter()
         database = build_database(repeated_corpus(source, n_frames), path, progress=stages)
         seconds = time.perf_counter() - began
     largest = max(database.maps, key=lambda phone: len(database.maps[phone].frames))
     return {
-        "seconds": seconds, "stages_s": stages.seconds(), "peak_mb": peak[0], "file_mb": path.stat().st_size / 2**20,
+        "seconds": seconds, "stages_s": stages.seconds(), "cpu_s": family.cpu_s, "peak_mb": family.peak_mb,
+        "file_mb": path.stat().st_size / 2**20,
         "frames": len(database.frames), "nodes": len(database.nodes), "sentences": len(database.sentences),
         "largest_map": largest, "largest_map_frames": len(database.maps[largest].frames),
         "minutes": len(database.frames) / database.rate_hz / 60,
@@ -115,7 +116,8 @@ def as_table(answer: dict) -> str:
         stages = ", ".join(f"{name} {seconds:.0f} s" for name, seconds in build["stages_s"].items())
         lines += [f"{build['frames']} frames ({build['minutes']:.0f} min), {build['nodes']} motion nodes, "
                   f"{build['sentences']} sentences",
-                  f"built in {build['seconds']:.0f} s ({stages}), peak {build['peak_mb']:.0f} MiB, "
+                  f"built in {build['seconds']:.0f} s ({stages}; {build['cpu_s']:.0f} s of processor time), "
+                  f"peak {build['peak_mb']:.0f} MiB, "
                   f"file {build['file_mb']:.0f} MiB"]  # fmt: skip
     use = answer["use"]
     lines.append(f"opened in {use['open_s']:.2f} s, engine {use['engine_s']:.2f} s, peak {use['peak_mb']:.0f} MiB")
@@ -144,39 +146,45 @@ class _Stages(Progress):
         return {name: end - began for (name, began), end in zip(self._began.items(), ends)}
 
 
-@contextlib.contextmanager
-def _family_peak() -> Iterator[list[float]]:
-    """Fill a list of one with the largest resident size of this process and its children, MiB."""
-    peak, ended = [0.0], threading.Event()
+class _Family:
+    """Watches this process and all that came of it, while the block runs, where the system tells.
 
-    def sample() -> None:
-        while not ended.wait(_SAMPLED_S):
-            peak[0] = max(peak[0], sum(map(_resident_mb, _family())))
+    peak_mb : the largest sum of their resident sizes; cpu_s : their processor time together
+    """
 
-    thread = threading.Thread(target=sample)
-    thread.start()
-    try:
-        yield peak
-    finally:
-        ended.set()
-        thread.join()
+    peak_mb = cpu_s = 0.0
+
+    def __enter__(self) -> _Family:
+        self._cpu_s: dict[int, float] = {}
+        self._ended = threading.Event()
+        self._before_s = time.process_time()
+        self._thread = threading.Thread(target=self._watch)
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._ended.set()
+        self._thread.join()
+        self._cpu_s[os.getpid()] = time.process_time() - self._before_s
+        self.cpu_s = sum(self._cpu_s.values())
+
+    def _watch(self) -> None:
+        page_mb, ticks = os.sysconf("SC_PAGE_SIZE") / 2**20, os.sysconf("SC_CLK_TCK")
+        while not self._ended.wait(_SAMPLED_S):
+            total_mb = 0.0
+            for process, fields in _family().items():
+                total_mb += int(fields[21]) * page_mb
+                self._cpu_s[process] = (int(fields[11]) + int(fields[12])) / ticks
+            self.peak_mb = max(self.peak_mb, total_mb)
 
 
-def _family() -> list[int]:
-    """This process and all that came of it, where the system tells."""
-    family, children = [os.getpid()], {}
+def _family() -> dict[int, list[str]]:
+    """What /proc says of this process and its descendants, from the third field of `stat` on."""
+    known: dict[int, list[str]] = {}
     for stat in Path("/proc").glob("[0-9]*/stat"):
-        with contextlib.suppress(OSError, ValueError, IndexError):
-            parent = int(stat.read_text().rpartition(")")[2].split()[1])
-            children.setdefault(parent, []).append(int(stat.parent.name))
+        with contextlib.suppress(OSError):
+            known[int(stat.parent.name)] = stat.read_text().rpartition(")")[2].split()
+    family = [os.getpid()] if os.getpid() in known else []
     for process in family:
-        family += children.get(process, [])
-    return family
-
-
-def _resident_mb(process: int) -> float:
-    with contextlib.suppress(OSError, ValueError, IndexError):
-        for line in Path(f"/proc/{process}/status").read_text().splitlines():
-            if line.startswith("VmRSS:"):
-                return int(line.split()[1]) / 1024
-    return 0.0
+        family += [child for child, fields in known.items() if int(fields[1]) == process]
+    return {process: known[process] for process in family}
