@@ -99,6 +99,8 @@ DATABASE_TIP = "PCA keeps {coverage:.1%} of the motion in {dims} numbers a frame
 SYNTHETIC = "synthetic"
 SYNTHETIC_TIP = "This motion was made by a program; it was not captured from a person"
 OPEN_DATABASE = "Open database…"
+OPEN_SHORT = "Open…"
+OPEN_DATABASE_TIP = "Open another motion database (Ctrl+D)"
 ENGINE_FACTS = "relaxation on the processor,\nelse all paths on {backend}"
 ENGINE_TIP = (
     "Bounds from a relaxation leave few motion nodes to look at, and the best path among them is proved best.\n"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QHBoxLayout
 
 from app import texts
 from app.authoring import Authoring
@@ -23,11 +24,13 @@ class DatabaseSection(Section):
         super().__init__(texts.DATABASE)
         self._authoring = authoring
         self.badge = label(texts.SYNTHETIC, "badge", texts.SYNTHETIC_TIP)
-        self.open_button = quiet_button(texts.OPEN_DATABASE, "", self.database_asked.emit)
-        self.title_row.addWidget(self.badge)
+        self.open_button = quiet_button(texts.OPEN_SHORT, texts.OPEN_DATABASE_TIP, self.database_asked.emit)
         self.title_row.addWidget(self.open_button)
         self.name, self.facts = ElidedLabel("plain"), label()
-        self.column.addWidget(self.name)
+        named = QHBoxLayout()
+        named.addWidget(self.name, 1)
+        named.addWidget(self.badge, 0, Qt.AlignmentFlag.AlignVCenter)
+        self.column.addLayout(named)
         self.column.addWidget(self.facts)
         authoring.document.changed.connect(self.on_document_changed)
         self.on_document_changed(Change.NODES, None)

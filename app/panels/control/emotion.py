@@ -30,7 +30,7 @@ class EmotionSection(Section):
             self.chosen.addItem(emotion, emotion)
         self.chosen.activated.connect(self.on_chosen)
         self.column.addWidget(self.chosen)
-        self.open_button = quiet_button(texts.OPEN_EMOTIONS, texts.OPEN_EMOTIONS_TIP, self.emotions_asked.emit)
+        self.open_button = quiet_button(texts.OPEN_SHORT, texts.OPEN_EMOTIONS_TIP, self.emotions_asked.emit)
         self.title_row.addWidget(self.open_button)
         authoring.document.changed.connect(self.on_document_changed)
         emotion_colours.changed.connect(self.show_colours)
