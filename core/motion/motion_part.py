@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from core.errors import UserFacingError
 from core.motion.captured_sentence import CapturedSentence
-from core.motion.database import MotionDatabase
+from core.motion.database import REMAKE, MotionDatabase
 from core.motion.marker_set import MarkerSet
 from core.motion.node import NIL, NodeTable, NodeTableBuilder
 from core.motion.pca import MotionPca
@@ -36,7 +37,10 @@ class MotionPart:
 
     @classmethod
     def of_database(cls, database: MotionDatabase) -> MotionPart:
-        """Take all sentences of a database."""
+        """Take all sentences of a database; raises `UserFacingError` when one does not follow the other."""
+        stops = [s.stop_frame for s in database.sentences]
+        if [s.start_frame for s in database.sentences] != [0, *stops[:-1]] or stops[-1:] != [len(database.frames)]:
+            raise UserFacingError(f"The motion database '{database.path}' is damaged (its sentences overlap).", REMAKE)
         return cls(database.frames, database.head_rotation, database.head_translation, database.nodes,
                    database.sentences, np.arange(len(database.frames)))  # fmt: skip
 

@@ -85,7 +85,7 @@ def newcomers_of_database(database: MotionDatabase, other: MotionDatabase, file,
     prefix : put before each sentence name
     Raises `UserFacingError` when the two are not of one rate, marker set, scale or actor.
     """
-    columns = _check_alike(database, other)
+    columns, theirs = _check_alike(database, other), MotionPart.of_database(other)
     for name in [s.name for s in other.sentences]:
         if prefix and not is_sentence_name(prefix + name):
             raise UserFacingError(f"'{prefix + name}' cannot be the name of a sentence.")
@@ -106,10 +106,11 @@ def newcomers_of_database(database: MotionDatabase, other: MotionDatabase, file,
             face, turns[span], moves[span] = _in_space_of(database, face, turns[span], moves[span])
         captures[prefix + sentence.name] = KeptCapture(face, capture.masked)
     sentences = tuple(replace(s, name=prefix + s.name) for s in other.sentences)
-    part = MotionPart(
-        np.concatenate([packed(database.pca, c.face) for c in captures.values()]), turns, moves,
-        replace(other.nodes, sentence_names=tuple(s.name for s in sentences)), sentences,
-        np.full(len(other.frames), -1),
+    part = replace(
+        theirs, frames=np.concatenate([packed(database.pca, c.face) for c in captures.values()]),
+        head_rotation=turns, head_translation=moves, sentences=sentences,
+        nodes=replace(other.nodes, sentence_names=tuple(s.name for s in sentences)),
+        came_from=np.full(len(other.frames), -1),
     )  # fmt: skip
     apart = [replace(r, sentence=prefix + r.sentence) for r in held_out_recordings(other)]
     own_names = [s.name for s in other.sentences] + [r.sentence.removeprefix(prefix) for r in apart]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
 import h5py
@@ -243,6 +244,22 @@ def test_other_markers_and_another_face_are_refused(path, tmp_path):
     build_database(replace(corpus, rest=REST * 1.4), tmp_path / "giant.h5", SETTINGS)
     with pytest.raises(UserFacingError, match="not of one actor"):
         add_database(path, tmp_path / "giant.h5")
+
+
+def test_sentences_that_overlap_are_damage(path, tmp_path):
+    build_database(corpus_of(0, 1), path, SETTINGS)
+    build_database(corpus_of(2, 3), tmp_path / "other.h5", SETTINGS)
+    with h5py.File(tmp_path / "other.h5", "r+") as file:
+        entries = json.loads(file["sentences"][()])
+        entries[1]["frames"][0] -= 5
+        del file["sentences"]
+        file["sentences"] = json.dumps(entries)
+    for change in (
+        lambda: add_database(path, tmp_path / "other.h5"),
+        lambda: remove_sentences(tmp_path / "other.h5", ["s2"]),
+    ):
+        with pytest.raises(UserFacingError, match="damaged"):
+            change()
 
 
 def test_a_database_open_for_writing_elsewhere_is_not_changed(path):
