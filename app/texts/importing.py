@@ -141,6 +141,7 @@ MEASURING_HEAD = "Measuring the head"
 STATE_HEAD = "{n} rigid, {rms:.2f} mm"
 STATE_HEAD_SHORT = "{n} rigid markers"
 MM = "{mm:.2f} mm"
+MM_ABOUT = "{mm:.1f} mm"
 TAKE = "Sentence:"
 TAKE_TIP = "The sentence that is plotted (Page Up, Page Down)"
 

@@ -12,7 +12,7 @@ from app.texts import importing as texts
 from app.theme import colour, theme
 
 _FOUND, _WANTED, _HOW, _AWAY = range(4)
-_WIDTHS_PX = (0, 0, 86, 66)
+_WIDTHS_PX = (0, 0, 84, 80)
 WEAK = 0.5
 
 

@@ -36,7 +36,7 @@ class MendPage(Page):
         self._soon.timeout.connect(self._set_limits)
         self._add_limits()
         self.sentences = PlainTable(texts.MEND_COLUMNS, texts.MEND_COLUMN_TIPS, (0, 60, 64, 90, 76, 76))
-        self.events = PlainTable(texts.EVENT_COLUMNS, (), (96, 0, 70, 80, 84))
+        self.events = PlainTable(texts.EVENT_COLUMNS, (), (96, 0, 76, 80, 92))
         split = QSplitter(childrenCollapsible=False, handleWidth=1)
         for table in (self.sentences, self.events):
             split.addWidget(table)
@@ -62,8 +62,6 @@ class MendPage(Page):
             row.addWidget(widget)
         row.insertSpacing(2, 2 * STEP)
         row.addStretch(1)
-        self.total = label()
-        row.addWidget(self.total)
         self.body.addLayout(row)
         for box in (self.longest, self.spike, self.deviations):
             box.valueChanged.connect(lambda _: self._soon.start())
@@ -84,7 +82,9 @@ class MendPage(Page):
         for widget in (label(texts.MEND_MARKER, "plain"), self.marker, self.axis, self.note):
             row.addWidget(widget)
         row.addStretch(1)
-        row.addWidget(legend)
+        self.total = label()
+        for widget in (self.total, legend):
+            row.addWidget(widget)
         self.body.addLayout(row)
         self.plot = themed_plot(texts.MEND_PLACE)
         self.plot.setFixedHeight(_PLOT_PX)
@@ -158,7 +158,7 @@ class MendPage(Page):
              texts.EVENT_OTHER.format(marker=r.marker, other=r.other) if r.other else r.marker,
              texts.SECONDS.format(s=r.start / facts.rate_hz),
              texts.MILLISECONDS.format(ms=1000 * (r.stop - r.start) / facts.rate_hz),
-             texts.MM.format(mm=r.size_mm) if np.isfinite(r.size_mm) and r.size_mm else "")
+             texts.MM_ABOUT.format(mm=r.size_mm) if np.isfinite(r.size_mm) and r.size_mm else "")
             for r in facts.rows
         ]  # fmt: skip
         self.events.show_rows(rows, [i for i, r in enumerate(facts.rows) if r.kind == LONG_GAP])

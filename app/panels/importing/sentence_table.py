@@ -15,7 +15,7 @@ from core.importing.plan import SentencePlan
 from core.speech.emotion import EMOTIONS
 
 _NAME, _MOTION, _SOUND, _WORDS, _EMOTION, _RATE, _FRAMES, _PROBLEMS = range(8)
-_WIDTHS_PX = (120, 130, 130, 210, 110, 64, 64, 0)
+_WIDTHS_PX = (110, 120, 110, 160, 104, 64, 64, 0)
 _SORTED = Qt.ItemDataRole.UserRole
 _ROW_PX = 3 * STEP + 4
 

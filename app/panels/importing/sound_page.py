@@ -36,7 +36,7 @@ from core.speech.loudness import FRAME_S, levels_db
 _MOST_MS = 600
 _TABLE_PX = 440
 _AGREEMENT_PX = 150
-_FLOOR_DB = 40.0
+_FLOOR_DB = 30.0
 
 
 @dataclass(frozen=True)
