@@ -13,6 +13,7 @@ from core.manifold.isomap import PhonemeMap
 from core.progress import SILENT, Progress
 
 N_NEIGHBORS = 12  # as many as the Isomap joins a frame to
+MOST_ROWS = 8_000  # each is compared with all frames: more would take minutes on the largest maps
 _ROWS_AT_ONCE = 256
 
 
@@ -31,11 +32,17 @@ class NeighbourPreservation:
 
     @classmethod
     def of(
-        cls, frames: np.ndarray, embedding: np.ndarray, n_neighbors: int = N_NEIGHBORS, progress: Progress = SILENT
+        cls,
+        frames: np.ndarray,
+        embedding: np.ndarray,
+        n_neighbors: int = N_NEIGHBORS,
+        progress: Progress = SILENT,
+        most_rows: int = MOST_ROWS,
     ) -> NeighbourPreservation:
         """Compare ``frames``, shape (n, n_dims), with their places ``embedding``, shape (n, 2).
 
-        Fewer neighbours are asked for in a map of under ``2 n_neighbors`` frames; one of under three is perfect.
+        Fewer neighbours are asked for in a map of under ``2 n_neighbors`` frames; one of under three is perfect. Of
+        more than ``most_rows`` frames as many, evenly spread, are asked for their neighbours among all.
         """
         n = len(frames)
         k = min(n_neighbors, (n - 1) // 2)
@@ -43,16 +50,17 @@ class NeighbourPreservation:
             return cls(1.0, 1.0, 1.0)
         frames, embedding = np.asarray(frames, float), np.asarray(embedding, float)
         intruders = extruders = common = 0.0
-        for first in range(0, n, _ROWS_AT_ONCE):
-            progress.step(first / n, "comparing neighbours")
-            rows = np.arange(first, min(first + _ROWS_AT_ONCE, n))
+        asked = np.arange(n) if n <= most_rows else np.linspace(0, n - 1, most_rows).astype(int)
+        for first in range(0, len(asked), _ROWS_AT_ONCE):
+            progress.step(first / len(asked), "comparing neighbours")
+            rows = asked[first : first + _ROWS_AT_ONCE]
             true_rank, map_rank = _ranks(frames, rows), _ranks(embedding, rows)
             near_truly, near_on_map = true_rank <= k, map_rank <= k
             intruders += (true_rank[near_on_map] - k).clip(0).sum()
             extruders += (map_rank[near_truly] - k).clip(0).sum()
             common += (near_truly & near_on_map).sum()
-        worst = n * k * (2 * n - 3 * k - 1) / 2
-        return cls(float(1 - intruders / worst), float(1 - extruders / worst), float(common / (n * k)))
+        worst = len(asked) * k * (2 * n - 3 * k - 1) / 2
+        return cls(float(1 - intruders / worst), float(1 - extruders / worst), float(common / (len(asked) * k)))
 
 
 def map_preservation(

@@ -49,3 +49,15 @@ def test_tiny_maps_have_figures(n):
     found = NeighbourPreservation.of(points, points[:, :2])
     assert 0 <= found.trustworthiness <= 1
     assert 0 <= found.shared <= 1
+
+
+def test_a_large_map_is_judged_by_a_part_of_its_frames():
+    rng = np.random.default_rng(11)
+    frames = rng.normal(size=(1500, 4))
+    embedding = frames[:, :2] + 0.3 * rng.normal(size=(1500, 2))
+    whole = NeighbourPreservation.of(frames, embedding)
+    part = NeighbourPreservation.of(frames, embedding, most_rows=500)
+    assert part != whole
+    assert part.trustworthiness == pytest.approx(whole.trustworthiness, abs=0.01)
+    assert part.continuity == pytest.approx(whole.continuity, abs=0.01)
+    assert part.shared == pytest.approx(whole.shared, abs=0.02)
