@@ -12,6 +12,7 @@ import numpy as np
 from app.report.charts import Line, line_chart
 from core.animeme.animeme import AnimemeModel
 from core.animeme.comparison import Rated, rate_methods, spoken_like
+from core.animeme.dragging import wander_when_dragged
 from core.animeme.examples import Example
 from core.animeme.material import (
     Mapping,
@@ -54,6 +55,8 @@ def bench_animemes(
             _draw(pictures, title, names, rated, parts["test"])
         if title == "key lip shapes":
             answer["speed"] = _speed(parts["train"], rated[0].model, [e.transcript for e in parts["test"]])
+        else:
+            answer["a vowel dragged to 2 s"] = _dragged(rated, [e.transcript for e in parts["test"]], names[0])
     if with_face:
         from core.face.default_face import default_face
 
@@ -75,7 +78,7 @@ def as_table(answer: dict) -> str:
                 f"{row['test_spread']:.3f} | {row['test_ratio']:.3f} | {row['form']} |"
             )
         lines.append("")
-    for group in ("speed", "face units"):
+    for group in ("speed", "a vowel dragged to 2 s", "face units"):
         if group in answer:
             lines += [f"{name}: {value}" for name, value in answer[group].items()]
     return "\n".join(lines)
@@ -141,6 +144,16 @@ def _speed(train: Sequence[Example], model: AnimemeModel, transcripts: Sequence)
         "steps": trained.n_steps, "steps_converged": to_the_end.n_steps,
         "times_real_time": float(np.median(said_s / times_s)), "first_curves_ms": float(np.median(times_s)) * 1e3,
         "first_curves_ms_worst": float(np.max(times_s)) * 1e3,
+    }  # fmt: skip
+
+
+def _dragged(rated: Sequence[Rated], transcripts: Sequence, control: str) -> dict[str, float]:
+    """See `wander_when_dragged`; for the animemes, plain and held."""
+    return {
+        f"{found.method}{', held' if holds else ''}": wander_when_dragged(
+            found.model, transcripts, control, holds=holds
+        )
+        for found in rated if isinstance(found.model, AnimemeModel) for holds in (False, True)
     }  # fmt: skip
 
 

@@ -14,7 +14,6 @@ from core.animeme.training import train_animemes
 from core.errors import UserFacingError
 from core.pipeline.curves import write_curves_csv, write_curves_json
 
-
 SPOKEN = ("b", "aa", "iy", "k", "s")  # neighbouring silences would become one
 
 
