@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -75,7 +75,7 @@ def run(job: ImportJob, progress: Progress = SILENT) -> dict[str, object]:
             result = run_import(plan, database_path, progress.part(0.1, 0.9 if shown else 1.0), workers)
             takes, report = _takes_of(result.database, plan) if shown else [], result.report
             made = {"nodes": len(result.database.nodes), "content_hash": result.database.content_hash}
-    warnings = _show(job, shown, takes, progress.part(0.9 if made else 0.6, 1.0))
+    warnings = write_takes(shown, takes, job.face, progress.part(0.9 if made else 0.6, 1.0))
     if job.failures is not None:
         write_failures(job.failures, ((row.sentence, row.failure) for row in report.failures))
     return {
@@ -154,10 +154,13 @@ def _takes_of(database: MotionDatabase, plan: ImportPlan) -> list[tuple[Recordin
     return takes
 
 
-def _show(
-    job: ImportJob, shown: list[Path], takes: list[tuple[Recording, MarkerMotion]], progress: Progress
+def write_takes(
+    shown: Sequence[Path], takes: Sequence[tuple[Recording, MarkerMotion]], face: str, progress: Progress = SILENT
 ) -> list[str]:
-    """Write the mended motion of every take, with its sound, to the films and marker files that were asked for."""
+    """Write the mended motion of every take, with its sound, to films and marker files; return sentences to warn with.
+
+    shown : one a kind; where there are several takes, each file gets the take's name at its end
+    """
     warnings: list[str] = []
     for i, (recording, motion) in enumerate(takes):
         paths = shown
@@ -167,7 +170,7 @@ def _show(
         part = progress.part(i / len(takes), (i + 1) / len(takes))
         # a capture has no gaze of its own, and its head is still: nothing is made up
         settings = VideoSettings(head=False, gaze=False)
-        warnings += write_outputs(paths, motion, audio, recording.transcript, settings, FaceChoice(job.face), part)
+        warnings += write_outputs(paths, motion, audio, recording.transcript, settings, FaceChoice(face), part)
     return list(dict.fromkeys(warnings))
 
 
