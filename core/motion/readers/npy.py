@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from core.errors import UserFacingError
+from core.motion.readers.archive import TooLarge, read_member
 
 # an hour of 148 points at 120 Hz is 384 MiB; more is refused before memory is asked for
 LARGEST_BYTES = 1 << 30
@@ -56,18 +57,17 @@ def read_npz(path: Path, wanted: Collection[str] | None = None) -> dict[str, np.
     arrays: dict[str, np.ndarray] = {}
     left = LARGEST_BYTES
     try:
+        archive_bytes = path.stat().st_size
         with path.open("rb") as file, zipfile.ZipFile(file) as archive:
             for member in archive.infolist():
                 name = member.filename.removesuffix(".npy")
                 if wanted is not None and name not in wanted:
                     continue
-                with archive.open(member) as stream:
-                    # what an archive says of its members' sizes need not be true
-                    raw = stream.read(min(member.file_size, left) + 1)
-                if len(raw) > left:
-                    raise UserFacingError(f"The arrays of '{path}' are larger than {LARGEST_BYTES >> 20} MiB.")
+                raw = read_member(archive, member, archive_bytes, left)
                 left -= len(raw)
                 arrays[name] = parse_npy(raw)
+    except TooLarge as error:
+        raise UserFacingError(f"The arrays of '{path}' are larger than {LARGEST_BYTES >> 20} MiB.") from error
     except _UNREADABLE as error:
         raise UserFacingError(f"'{path}' is no readable archive of arrays.") from error
     return arrays

@@ -14,6 +14,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from core.errors import UserFacingError
+from core.motion.readers.archive import TooLarge, read_member
 
 _MAIN = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
 _STRINGS = "xl/sharedStrings.xml"
@@ -33,7 +34,8 @@ def read_sheet(path: Path) -> list[list[str]]:
     Raises `UserFacingError` for what is missing, damaged, or larger than a table of names should be.
     """
     try:
-        if path.stat().st_size > _LARGEST_FILE:
+        size = path.stat().st_size
+        if size > _LARGEST_FILE:
             raise UserFacingError(f"'{path}' is too large for a table of names.")
         with path.open("rb") as file, zipfile.ZipFile(file) as archive:
             members = set(archive.namelist())
@@ -41,20 +43,19 @@ def read_sheet(path: Path) -> list[list[str]]:
             if not sheets:
                 raise UserFacingError(f"'{path}' has no sheet.")
             first = min(sheets, key=lambda name: int(re.findall(r"\d+", name)[0]))
-            strings = _strings(_member(archive, _STRINGS, path)) if _STRINGS in members else []
-            return _rows(_member(archive, first, path), strings, path)
+            strings = _strings(_member(archive, _STRINGS, size)) if _STRINGS in members else []
+            return _rows(_member(archive, first, size), strings, path)
+    except TooLarge as error:
+        raise UserFacingError(f"'{path}' is too large for a table of names.") from error
     except _UNREADABLE as error:
         raise UserFacingError(f"'{path}' is no readable workbook.") from error
 
 
-def _member(archive: zipfile.ZipFile, name: str, path: Path) -> ElementTree.Element:
-    with archive.open(name) as stream:
-        raw = stream.read(_LARGEST_MEMBER + 1)
-    if len(raw) > _LARGEST_MEMBER:
-        raise UserFacingError(f"'{path}' is too large for a table of names.")
+def _member(archive: zipfile.ZipFile, name: str, archive_bytes: int) -> ElementTree.Element:
+    raw = read_member(archive, archive.getinfo(name), archive_bytes, _LARGEST_MEMBER)
     # entities that unfold into gigabytes are declared in one
     if b"<!DOCTYPE" in raw or b"<!ENTITY" in raw:
-        raise UserFacingError(f"'{path}' is no readable workbook.")
+        raise ValueError("it declares entities")
     return ElementTree.fromstring(raw)
 
 

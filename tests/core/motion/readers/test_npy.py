@@ -83,3 +83,23 @@ def test_an_archive_gives_what_is_asked_for_and_believes_no_size(tmp_path):
         archive.writestr("a.npy", header(text, bytes(8)))
     with pytest.raises(UserFacingError, match="no readable archive"):
         read_npz(tmp_path / "c.npz")
+
+
+@pytest.mark.parametrize("packing", [zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED])
+def test_sizes_that_an_archive_makes_up_ask_for_no_memory(tmp_path, packing):
+    path = tmp_path / "a.npz"
+    with zipfile.ZipFile(path, "w", packing) as archive:
+        archive.writestr("a.npy", header("{'descr': '<f8', 'fortran_order': False, 'shape': (90,), }\n", bytes(720)))
+        packed = archive.getinfo("a.npy").compress_size
+    raw = path.read_bytes()
+    at = raw.rindex(b"PK\x01\x02") + 20
+    sizes = (700_000_000).to_bytes(4, "little")
+    assert int.from_bytes(raw[at : at + 4], "little") == packed
+    path.write_bytes(raw[:at] + 2 * sizes + raw[at + 8 :])
+    tracemalloc.start()
+    try:
+        with pytest.raises(UserFacingError, match="no readable archive"):
+            read_npz(path)
+        assert tracemalloc.get_traced_memory()[1] < 1e6
+    finally:
+        tracemalloc.stop()
