@@ -261,8 +261,15 @@ CANNOT_KEEP = "The accepted alignment cannot be kept in '{folder}'."
 
 # Build
 BUILD = "Build"
-BUILD_HINT = "Where the database goes, and how it is made. A build that was cut goes on where it was."
-TARGET = "Database file"
+BUILD_HINT = (
+    "Where the database goes, and how it is made. A build that was cut goes on where it was. Takes without speech can "
+    "be written as films or markers instead."
+)
+TARGET = "Write to"
+TARGET_TIP = (
+    "A motion database (.h5); or films (.avi, .mp4) or markers (.c3d, .csv) of the mended takes, one each, for takes "
+    "without speech too"
+)
 NAME = "Name"
 RATE_OF = "Frame rate"
 DIMS = "Dimensions"
@@ -272,15 +279,16 @@ HOLD_OUT_TIP = "Keep a sixth of the sentences out of the database, to tune weigh
 HOLD_OUTS = {"": "nothing", "sentences": "a sixth of the sentences", "letters": "by letters (GRID)",
              "digits": "by digits (GRID)"}  # fmt: skip
 BROWSE = "Browse…"
-BUILD_NOW = "Build the database"
+BUILD_NOW = "Build"
 BUILD_NOW_TIP = "Carry the plan out (Ctrl+Return)"
 CANCEL_BUILD = "Cancel"
 BUILDING = "Building “{name}”"
 OPEN_BUILT = "Open in the workstation"
 OPEN_BUILT_TIP = "Search this database from now on, in the main window"
 BUILT = "Built {path}: {nodes} motion nodes of {sentences} sentences"
+WRITTEN = "Wrote {takes} takes as {path}"
 BUILD_EMPTY = "Choose captures in the step “Files” first."
-FILTER_DATABASE = "Motion databases (*.h5)"
+FILTER_TARGET = "Motion databases (*.h5);;Films of the takes (*.avi *.mp4);;Markers of the takes (*.c3d *.csv)"
 REPORT_COLUMNS = ("Sentence", "Gaps", "Open", "Spikes", "Swaps", "Head", "Late", "Taken out", "Words", "Notes")
 STATE_BUILT = "built"
 STATE_BUILDING = "building…"

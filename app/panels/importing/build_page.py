@@ -17,21 +17,25 @@ from PySide6.QtWidgets import (
 )
 
 from app.authoring import Authoring
+from app.export import check_outputs
+from app.importing import write_takes
 from app.panels.importing.draft import ImportDraft
 from app.panels.importing.page import Page
 from app.panels.importing.plain_table import PlainTable
 from app.panels.pane import label
+from app.pictures import DEFAULT_FACE
 from app.settings import last_folder, remember_folder, window_settings
 from app.texts import importing as texts
 from app.theme import STEP
 from core.errors import UserFacingError
 from core.importing.plan import ImportPlan
 from core.importing.report import ImportReport, SentenceReport
-from core.importing.run import ImportResult, run_import
+from core.importing.run import import_motion, run_import
 from core.progress import Progress
 
 _FOLDER = "database"
 _SUFFIX = ".h5"
+_DATABASES = (_SUFFIX, ".hdf5")
 _WORDS_PX = 92
 
 
@@ -41,6 +45,15 @@ class BuildRequest:
 
     plan: ImportPlan
     target: Path
+
+
+@dataclass(frozen=True)
+class _Built:
+    """What came of it; nodes : of the database, None where none was asked for."""
+
+    report: ImportReport
+    nodes: int | None
+    warnings: tuple[str, ...] = ()
 
 
 class BuildPage(Page):
@@ -53,7 +66,7 @@ class BuildPage(Page):
         form = QFormLayout()
         form.setHorizontalSpacing(2 * STEP)
         form.setVerticalSpacing(STEP)
-        self.name, self.path = QLineEdit(), QLineEdit()
+        self.name, self.path = QLineEdit(), QLineEdit(toolTip=texts.TARGET_TIP)
         self.browse = QPushButton(texts.BROWSE)
         self.rate = QSpinBox(minimum=10, maximum=1000, suffix=" Hz")
         self.dims = QSpinBox(minimum=1, maximum=300, toolTip=texts.DIMS_TIP)
@@ -138,9 +151,9 @@ class BuildPage(Page):
 
     def ask_path(self) -> None:
         """Choose where it goes."""
-        name, _ = QFileDialog.getSaveFileName(self, texts.TARGET, self.path.text(), texts.FILTER_DATABASE)
+        name, _ = QFileDialog.getSaveFileName(self, texts.TARGET, self.path.text(), texts.FILTER_TARGET)
         if name:
-            self.path.setText(str(Path(name).with_suffix(_SUFFIX)))
+            self.path.setText(name if Path(name).suffix else f"{name}{_SUFFIX}")
 
     def on_build(self) -> None:
         """Carry the plan out."""
@@ -154,16 +167,19 @@ class BuildPage(Page):
             self.draft.jobs.cancel(kind)
         title = texts.BUILDING.format(name=self.draft.plan.name)
         self._show_report(None)
-        self.draft.jobs.start("import", title, request, _build, lambda result: self._on_built(request, result),
+        self.draft.jobs.start("import", title, request, _build, lambda built: self._on_built(request, built),
                               self._on_failed)  # fmt: skip
 
-    def _on_built(self, request: BuildRequest, result: ImportResult) -> None:
-        self._built = request.plan, request.target
+    def _on_built(self, request: BuildRequest, built: _Built) -> None:
         remember_folder(self._settings, _FOLDER, request.target)
-        self._show_report(result.report)
-        summary = result.database.summary()
-        self.draft.noted.emit(texts.BUILT.format(path=request.target, nodes=summary["nodes"],
-                                                 sentences=summary["sentences"]))  # fmt: skip
+        self._show_report(built.report)
+        path, n = request.target, len(built.report.taken)
+        if built.nodes is None:
+            self._built = None
+            self.draft.noted.emit(" ".join((texts.WRITTEN.format(path=path, takes=n), *built.warnings)))
+        else:
+            self._built = request.plan, path
+            self.draft.noted.emit(texts.BUILT.format(path=path, nodes=built.nodes, sentences=n))
         self._enable()
 
     def _on_failed(self, error: UserFacingError) -> None:
@@ -195,5 +211,13 @@ def _row(row: SentenceReport) -> tuple[str, ...]:
             head, late, out, texts.ALIGNMENTS.get(row.alignment, ""), row.failure or " ".join(row.notes))  # fmt: skip
 
 
-def _build(request: BuildRequest, progress: Progress) -> ImportResult:
-    return run_import(request.plan, request.target, progress)
+def _build(request: BuildRequest, progress: Progress) -> _Built:
+    """Write the database, or film or markers of the takes as they are mended; a job."""
+    if request.target.suffix.lower() in _DATABASES:
+        result = run_import(request.plan, request.target, progress)
+        return _Built(result.report, len(result.database.nodes))
+    check_outputs([request.target])
+    imported = import_motion(request.plan, progress.part(0.0, 0.5))
+    takes = list(zip(imported.recordings, imported.motions))
+    warnings = write_takes([request.target], takes, DEFAULT_FACE, progress.part(0.5, 1.0))
+    return _Built(imported.report, None, tuple(warnings))

@@ -9,7 +9,9 @@ from PySide6.QtTest import QTest
 
 from app.pictures import FaceRig
 from core.face.default_face import FaceUnavailable
-from core.motion.database import open_database
+from core.motion.marker_set import MarkerSet
+from core.motion.motion_files import read_motion
+from core.motion.normalise import normalise
 
 WAIT_MS = 60_000
 
@@ -43,43 +45,44 @@ def test_what_was_planted_is_listed_worst_first_and_a_limit_closes_the_long_gap(
     assert page.longest.value() == 0.5
 
 
-def test_the_database_that_is_built_holds_the_mended_motion_and_drives_a_face(
+def test_takes_without_speech_are_no_database_and_the_window_says_what_else_they_can_be(
+    assistant, mocap, tmp_path, qtbot, give_folder, go, click
+):
+    give_folder(assistant, mocap[0])
+    go(assistant, assistant.build)
+    assistant.build.path.setText(str(tmp_path / "mocap.h5"))
+    click(assistant.build.build)
+    qtbot.waitUntil(lambda: bool(assistant.message.text), timeout=WAIT_MS)
+    assert "speech" in assistant.message.text and "film" in assistant.message.text
+    assert not (tmp_path / "mocap.h5").exists()
+
+
+def test_the_mended_motion_is_near_what_was_captured_and_drives_a_face(
     assistant, mocap, tmp_path, qtbot, give_folder, go, click, monkeypatch
 ):
     folder, whole, names = mocap
     give_folder(assistant, folder)
     go(assistant, assistant.build)
-    assistant.build.path.setText(str(tmp_path / "mocap.h5"))
+    assistant.build.path.setText(str(tmp_path / "mended.c3d"))
     click(assistant.build.build)
-    qtbot.waitUntil(lambda: assistant.build.open.isVisible(), timeout=WAIT_MS)
-    database = open_database(tmp_path / "mocap.h5")
-    assert database.markers.names == names
-    jaw = next(s for s in database.sentences if s.name == "Jaw")
-    face = database.pca.positions(database.frames[jaw.start_frame : jaw.stop_frame].astype(float))
-    clean = _in_head_space(whole["Jaw"], database)
-    at = np.arange(200, 212) * 2  # 60 Hz to 120 Hz
-    chin = names.index("Chin")
-    off_mm = np.linalg.norm(face[at, chin] - clean[200:212, chin], axis=1)
+    qtbot.waitUntil(lambda: (tmp_path / "mended-Jaw.c3d").is_file() and assistant.jobs.is_idle, timeout=WAIT_MS)
+    face, written, rate_hz = read_motion(tmp_path / "mended-Jaw.c3d")
+    plan, chin = assistant.draft.plan, names.index("Chin")
+    assert written == names and rate_hz == 30.0
+    rows = [names.index(name) for name in plan.rigid]
+    clean, _ = normalise(whole["Jaw"][::2], face[0].astype(float), rows, names.index(plan.origin))
     swing_mm = np.linalg.norm(np.ptp(clean[:, chin], axis=0))
+    off_mm = np.linalg.norm(face[100:106, chin] - clean[100:106, chin], axis=1)
     assert off_mm.max() < 0.1 * swing_mm
     monkeypatch.delenv("EFASE_DATA_DIR")  # the face that this machine has
+    markers = MarkerSet(names, face[0], plan.groups, plan.landmarks)
     try:
-        rig = FaceRig.of("default", database.markers)
+        rig = FaceRig.of("default", markers)
     except FaceUnavailable as error:
         pytest.skip(str(error))
     open_frame = int(np.argmin(face[:, chin, 1]))
-    moved = rig.pose(face[open_frame] - database.markers.rest) - rig.face.positions
+    moved = rig.pose(face[open_frame] - face[0]) - rig.face.positions
     assert moved[rig.vertices[chin], 1] < -0.2 * swing_mm  # the mesh's chin goes down with the actor's
-
-
-def _in_head_space(positions, database):
-    from core.motion.head_space import in_head_space
-    from core.motion.recording import Recording
-    from core.speech.transcript import Transcript
-
-    transcript = Transcript.covering([], [], len(positions) / 60.0)
-    recording = Recording("Jaw", "neutral", positions, database.markers.names, 60.0, transcript)
-    return in_head_space(recording, database.markers, False).face
 
 
 def test_a_click_on_a_dot_changes_the_head_and_undo_brings_it_back(assistant, mocap, give_folder, go, click):
