@@ -88,9 +88,11 @@ def _breaks(positions: np.ndarray, rate_hz: float, jumps: list[MarkerJumps]) -> 
     seen = np.isfinite(positions).all(axis=2)
     breaks = []
     for k, found in enumerate(jumps):
+        jumped = set(found.at.tolist())
         for at in found.at:
             before = positions[at - 1, k]
-            slope = before - positions[at - 2, k] if at >= 2 and seen[at - 2, k] else np.zeros(3)
+            steady = at >= 2 and seen[at - 2, k] and at - 1 not in jumped
+            slope = before - positions[at - 2, k] if steady else np.zeros(3)
             breaks.append(_Break(k, int(at) - 1, int(at), before + slope, positions[at, k]))
         frames = np.flatnonzero(seen[:, k])
         for i in np.flatnonzero(np.diff(frames) > 1):
