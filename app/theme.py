@@ -140,7 +140,7 @@ def _style_sheet(t: Theme) -> str:
     QPushButton[role="primary"]:focus {{ border-color: {t.text}; }}
     QPushButton[role="primary"]:disabled {{ background: {t.raised}; color: {t.dim}; border-color: {t.line}; }}
     QPushButton[role="quiet"], QToolButton {{ background: transparent; border: 1px solid transparent;
-        border-radius: 3px; padding: 2px 6px; color: {t.dim}; font-size: {SMALL_PX}px; }}
+        border-radius: 3px; padding: 2px 2px; color: {t.dim}; font-size: {SMALL_PX}px; }}
     QPushButton[role="quiet"]:hover, QToolButton:hover {{ color: {t.text}; }}
     QPushButton[role="quiet"]:focus, QToolButton:focus {{ border-color: {t.accent}; }}
     QPushButton[role="quiet"]:disabled, QToolButton:disabled {{ color: {t.faint}; }}

@@ -6,7 +6,16 @@ from collections.abc import Callable
 from html import escape
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QStackedWidget, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QButtonGroup,
+    QHBoxLayout,
+    QLabel,
+    QSizePolicy,
+    QStackedWidget,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from app.theme import STEP
 
@@ -84,6 +93,7 @@ class Choice(QWidget):
         for i, (_, word, tip) in enumerate(options):
             button = QToolButton(text=word, checkable=True, toolTip=tip)
             button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+            button.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)  # a word cut to dots tells nothing
             self.group.addButton(button, i)
             row.addWidget(button)
         self.group.button(len(options) - 1).setChecked(True)
@@ -116,8 +126,10 @@ class Pane(QWidget):
         column.setSpacing(0)
         self.header = QHBoxLayout()
         self.header.setContentsMargins(STEP + 4, 0, STEP, 0)
-        self.header.setSpacing(STEP)
-        self.header.addWidget(label(title, "title"))
+        self.header.setSpacing(STEP // 2)
+        name = ElidedLabel("title")
+        name.setText(title)
+        self.header.addWidget(name)
         self.info = ElidedLabel()
         self.header.addWidget(self.info, 1)
         top = QWidget()

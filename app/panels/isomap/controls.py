@@ -14,6 +14,7 @@ from app.theme import STEP, theme
 from core.speech.emotion import EMOTIONS
 
 SIGNS = {"neutral": "●", "happiness": "▲", "anger": "■", "sadness": "▼"}
+_LEAST_LETTERS = 8
 _SIGMA_PX = 2, 32
 _SLIDER_PX = 7 * STEP
 # the slider of ρ is logarithmic: an eighth to eight times the ρ that suits the map, in steps of a tenth of an octave
@@ -37,7 +38,7 @@ class MapControls(QWidget):
         self.setFixedHeight(3 * STEP + 4)
         row = QHBoxLayout(self)
         row.setContentsMargins(STEP, 0, STEP, 0)
-        row.setSpacing(STEP)
+        row.setSpacing(STEP // 2)
         self.tool = Choice([
             (BOX, texts.MAP_BOX, texts.MAP_BOX_TIP), (LASSO, texts.MAP_LASSO, texts.MAP_LASSO_TIP),
             (MOVE, texts.MAP_MOVE, texts.MAP_MOVE_TIP),
@@ -45,6 +46,8 @@ class MapControls(QWidget):
         self.tool.group.idClicked.connect(lambda _: self.tool_chosen.emit(self.tool.key))
         self.colour = QComboBox(toolTip=texts.COLOUR_TIP)
         self.colour.setProperty("role", "small")
+        self.colour.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.colour.setMinimumContentsLength(_LEAST_LETTERS)
         self.colour.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         for i, by in enumerate(ColourBy):
             self.colour.addItem(texts.COLOUR_BY[by.value], by)
