@@ -12,8 +12,8 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from app.export import check_outputs
-from app.importing import write_failures
 from app.synthesis import Ready, SynthesisJob, made_ready, run
+from core.batch.failures import write_failures
 from core.batch.journal import Journal
 from core.batch.workers import workers_at
 from core.errors import UserFacingError

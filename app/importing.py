@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import csv
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import numpy as np
 
 from app.export import SUFFIXES, VideoSettings, check_outputs, write_outputs
 from core.actress.corpus import actress_marker_set
+from core.batch.failures import write_failures
 from core.batch.workers import workers_at
 from core.document.parts import FaceChoice
 from core.errors import UserFacingError
@@ -21,7 +21,7 @@ from core.importing.report import ImportReport
 from core.importing.run import import_motion, run_import
 from core.importing.survey import survey
 from core.media.audio import Audio, load_audio
-from core.media.swap_in import check_target, swapped_in
+from core.media.swap_in import check_target
 from core.motion.database import MotionDatabase, open_database
 from core.motion.recording import Recording
 from core.progress import SILENT, Progress
@@ -178,14 +178,6 @@ def _sound(path: Path | None, duration_s: float) -> Audio:
     if path is not None:
         return load_audio(path)
     return Audio(np.zeros(round(duration_s * _SILENCE_HZ), np.float32), _SILENCE_HZ)
-
-
-def write_failures(path: Path, rows: Iterable[tuple[str, str]]) -> None:
-    """Write a table of what failed and why; raises `UserFacingError`."""
-    with swapped_in(path) as beside, beside.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(("name", "failure"))
-        writer.writerows(rows)
 
 
 def in_words(answer: dict[str, object]) -> str:

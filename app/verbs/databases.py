@@ -53,6 +53,7 @@ def info(
 ) -> None:
     """Say what a motion database holds."""
     from app.demo import open_named
+    from core.importing.report import told_by
 
     with progress_bar("info") as progress:
         summary = open_named(database, progress).summary()
@@ -63,6 +64,8 @@ def info(
     print(f"emotions: {', '.join(f'{n} {e}' for e, n in summary['emotions'].items())}")
     print(f"phonemes: {', '.join(f'{p} {n}' for p, n in summary['phonemes'].items())}")
     print(f"weights: {_tuning_in_words(summary['tuning'])}")
+    if imported := told_by(summary["report"]):
+        print(imported)
     print(f"content {summary['content_hash'][:16]}")
 
 

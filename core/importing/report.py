@@ -101,3 +101,13 @@ class ImportReport:
             lines.append(f"motion against sound: {late} (confidence {self.session_offset_confidence:.2f})")
         lines += [f"left out '{row.sentence}': {row.failure}" for row in self.failures]
         return "\n".join(lines)
+
+
+def told_by(report: Mapping) -> str:
+    """Return what a database's ``report`` tells of its import, in words; "" when it tells of none, or nonsense."""
+    if KEY not in report:
+        return ""
+    try:
+        return ImportReport.from_dict(report[KEY]).in_words()
+    except (TypeError, KeyError, ValueError, AttributeError):
+        return ""
