@@ -174,13 +174,13 @@ def _draw(folder: Path, title: str, names: Sequence[str], rated: Sequence[Rated]
     shown = [found for found in rated if found.method in _COLOURS]
     errors = [float(((spoken_like(shown[0].model, e) - e.track.values)[:, 0] ** 2).mean()) for e in test]
     example = test[int(np.argsort(errors)[len(errors) // 2])]
-    x = example.track.times_s
+    x, label = example.track.times_s, f"{names[0]}, mm" if title == "mouth" else names[0]
     lines = [Line("captured", x, example.track.values[:, 0].astype(float), "#3b4450", "dashed")]
     lines += [Line(f.method, x, spoken_like(f.model, example)[:, 0], _COLOURS[f.method]) for f in shown]
     said = [(u.start_s, u.end_s, u.phone) for u in example.transcript.phonemes]
     files = {
         f"animeme-{title.replace(' ', '-')}.svg": line_chart(
-            f"{names[0]}, captured and synthesised", lines, ("s", names[0]), said
+            f"{names[0]}, captured and synthesised", lines, ("s", label), said
         )
     }
     model = shown[0].model

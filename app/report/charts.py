@@ -91,7 +91,7 @@ def line_chart(
     marks: Sequence[tuple[float, float, str]] = (),
     size: tuple[int, int] = (860, 280),
 ) -> str:
-    """Draw lines with a legend.
+    """Draw lines with a legend; a line without a name is left out of that.
 
     labels : of the x and the y axis, with their units
     marks : spans of x with a name each, written above where there is room (phones)
@@ -111,7 +111,7 @@ def line_chart(
             f'stroke-linejoin="round"{_DASHES[line.style]}/>'
         )
     at = plane.x_px[0]
-    for line in lines:
+    for line in (line for line in lines if line.name):
         plane.parts.append(f'<path d="M{at} 14h26" stroke="{line.colour}" stroke-width="1.8"{_DASHES[line.style]}/>')
         plane.text(at + 32, 18, line.name, "start", INK)
         at += 56 + 7 * len(line.name)
