@@ -9,6 +9,7 @@ import typer
 
 from app.terminal import print_json, progress_bar, warn
 from app.verbs.options import Background, Database, Json, KeyPoses, Language, Lexicon, PhoneTable, Span, Strict
+from core.errors import UserFacingError
 
 _OUTPUTS = (
     ".csv (Live Link Face), .curves.csv, .json, .glb, .usd (.points.usd: a point cache), .avi, .mp4, .png or .c3d; "
@@ -23,6 +24,9 @@ def lipsync(
     text: Annotated[str | None, typer.Option(help="What is said, or a text file; recognised when absent.")] = None,
     phones: Annotated[Path | None, typer.Option(help="TextGrid, label or `start end phone` file instead.")] = None,
     db: Database = None,
+    model: Annotated[
+        Path | None, typer.Option(help="Animemes of controls, as `efase train animeme` writes them.")
+    ] = None,
     emotion: Annotated[str | None, typer.Option(help="neutral, happiness, anger or sadness.")] = None,
     emotions: Annotated[Path | None, typer.Option(help="Text lines `start end emotion [intensity]`.")] = None,
     face: Annotated[str, typer.Option(help=_FACE)] = "default",
@@ -41,21 +45,28 @@ def lipsync(
     json: Json = False,
 ) -> None:
     """Speech to the controls of a character: `efase synth --engine animeme`, for rigs."""
+    from app import lipsync as by_model
+    from app import synthesis
     from app.export import VideoSettings, background_colour, frame_rate, span_of_time, video_size
-    from app.synthesis import SynthesisJob, run
 
+    if model is not None and db is not None:
+        raise UserFacingError("A model and a database were given; a model of controls needs no database.")
     video = VideoSettings(
         frame_rate(fps), *video_size(size), start_frame=start_frame, head=head, gaze=gaze,
         background=None if background is None else background_colour(background),
         span_s=None if span is None else span_of_time(span),
     )  # fmt: skip
-    job = SynthesisJob(
-        audio=audio, outputs=tuple(output), text=text, phones=phones, database=db, emotion=emotion, emotions=emotions,
-        engine="animeme", face=face, key_poses=poses, csv_is_live_link=True, video=video, lexicon=lexicon,
-        strict=strict, language=language, phone_table=phone_table,
+    common = dict(
+        audio=audio, outputs=tuple(output), text=text, phones=phones, emotion=emotion, emotions=emotions, face=face,
+        key_poses=poses, video=video, lexicon=lexicon, strict=strict, language=language, phone_table=phone_table,
     )  # fmt: skip
     with progress_bar("lipsync") as progress:
-        _tell_written(run(job, progress), json)
+        if model is None:
+            job = synthesis.SynthesisJob(database=db, engine="animeme", csv_is_live_link=True, **common)
+            answer = synthesis.run(job, progress)
+        else:
+            answer = by_model.run(by_model.LipsyncJob(model=model, **common), progress)
+    _tell_written(answer, json)
 
 
 def curves(

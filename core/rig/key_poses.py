@@ -113,15 +113,22 @@ def posed_controls(poses: KeyPoses, rig: Rig, motion: MarkerMotion) -> ControlTr
     the controls are those in [0, 1] that come nearest to it, min |V − V_C|² over the vertices. Raises
     `UserFacingError` when the poses are another rig's, or the motion lacks their markers.
     """
-    if poses.controls != rig.names:
-        raise UserFacingError(f"The poses were made for '{poses.rig}', whose controls are not those of the rig "
-                              f"'{rig.face.name}'.")  # fmt: skip
+    _check_rig(poses, rig)
     missing = [name for name in poses.markers if name not in motion.markers.names]
     if missing:
         raise UserFacingError(f"The motion has no lip marker '{missing[0]}', which the poses were made with.")
     rows = [motion.markers.names.index(name) for name in poses.markers]
     shares = solve_shares(motion.displacements[:, rows].astype(float), poses.lips_mm)
-    wanted = shares @ poses.values
+    return share_controls(poses, rig, ControlTrack(poses.keys, shares, motion.rate_hz))
+
+
+def share_controls(poses: KeyPoses, rig: Rig, shares: ControlTrack) -> ControlTrack:
+    """Return the controls of ``rig`` for shares of the key lip shapes over time; see `posed_controls`.
+
+    shares : its controls are the keys of ``poses``, in any order
+    """
+    _check_rig(poses, rig)
+    wanted = shares.arranged(poses.keys).values @ poses.values
     values = wanted.copy()
     beyond = ((wanted < 0) | (wanted > 1)).any(axis=1)
     if beyond.any():
@@ -130,7 +137,14 @@ def posed_controls(poses: KeyPoses, rig: Rig, motion: MarkerMotion) -> ControlTr
         sizes, axes = np.linalg.eigh(basis @ basis.T)
         root = axes * np.sqrt(np.maximum(sizes, 0.0))
         values[beyond] = bounded_least_squares(root, wanted[beyond] @ root)
-    return ControlTrack(rig.names, values, motion.rate_hz)
+    return ControlTrack(rig.names, values, shares.rate_hz, shares.start_frame)
+
+
+def _check_rig(poses: KeyPoses, rig: Rig) -> None:
+    if poses.controls != rig.names:
+        raise UserFacingError(
+            f"The poses were made for '{poses.rig}', whose controls are not those of the rig '{rig.face.name}'."
+        )
 
 
 def load_key_poses(path: str | Path) -> KeyPoses:

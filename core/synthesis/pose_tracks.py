@@ -41,6 +41,18 @@ class PoseTracks:
             tongue_track(transcript, rate_hz, n_frames),
         )
 
+    def later(self, first: int) -> PoseTracks:
+        """Return the tracks from frame ``first`` on; a track that is shorter holds its last frame."""
+
+        def rest(track: np.ndarray) -> np.ndarray:
+            return track[min(first, len(track) - 1) :]
+
+        return PoseTracks(
+            None if self.head is None else (rest(self.head[0]), rest(self.head[1])),
+            None if self.gaze is None else rest(self.gaze),
+            None if self.tongue is None else rest(self.tongue),
+        )
+
     def at(self, frame: int) -> dict[str, object]:
         """Return the keyword arguments of `FaceRig.pose` for one frame; the last frame is held."""
 

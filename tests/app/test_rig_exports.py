@@ -20,7 +20,7 @@ from core.media.audio import Audio
 from core.media.video import probe
 from core.motion.build import BuildSettings, build_database
 from core.motion.live_link_face import read_live_link_face
-from core.pipeline.curves import read_curves_json, write_curves_json
+from core.pipeline.curves import read_curves_json, write_curves_csv, write_curves_json
 from core.pipeline.gltf import write_glb
 from core.rig.key_poses import default_poses
 from core.rig.rig import Rig, posed
@@ -171,3 +171,45 @@ def test_markers_that_fit_no_face_are_refused(efase, face, database_path, speech
     code, _, err = efase("lipsync", speech_path, "--phones", speech_path.with_suffix(".lab"), "--db", database_path,
                          "-o", tmp_path / "a.csv")  # fmt: skip
     assert code == 2 and "known points" in err and not (tmp_path / "a.csv").exists()
+
+
+@pytest.fixture
+def artists_model(efase, tmp_path):
+    """Animemes of two controls, trained on an artist's curves: the jaw opens in aa and closes in m."""
+    rng = np.random.default_rng(2)
+    folder = tmp_path / "curves"
+    folder.mkdir()
+    for n in range(6):
+        spoken = rng.permutation(["aa", "m", "iy", "aa", "m", "iy"]).tolist()
+        lines = [f"{0.2 * k:.1f} {0.2 * (k + 1):.1f} {phone}" for k, phone in enumerate(["pau", *spoken, "pau"])]
+        (folder / f"{n}.lab").write_text("\n".join(lines) + "\n")
+        height = {"aa": 0.8, "iy": 0.3, "m": 0.0, "pau": 0.0}
+        steps = np.repeat([height[phone] for phone in ["pau", *spoken, "pau"]], 6)
+        jaw = np.convolve(np.pad(steps, 2, mode="edge"), np.ones(5) / 5, mode="valid")
+        write_curves_csv(folder / f"{n}.csv", ControlTrack(("jawOpen", "ctrl"), np.stack([jaw, jaw / 2], 1), 30.0))
+    code, _, err = efase("train", "animeme", "--controls", folder, "-o", tmp_path / "m.npz")
+    assert code == 0, err
+    return tmp_path / "m.npz"
+
+
+def test_a_model_of_an_artists_curves_speaks_by_her_controls(efase, artists_model, speech_path, tmp_path):
+    said = speech_path.with_suffix(".lab")
+    code, out, err = efase("lipsync", speech_path, "--phones", said, "--model", artists_model, "--range", "0.2-0.6",
+                           "-o", tmp_path / "a.json", "-o", tmp_path / "a.csv", "--fps", "25", "--json")  # fmt: skip
+    assert code == 0 and "ctrl" in err  # Live Link Face has no such unit
+    curves = read_curves_json(tmp_path / "a.json")
+    assert curves.names == ("jawOpen", "ctrl") and len(curves) == 10 and curves.start_frame == 5
+    np.testing.assert_allclose(curves.column("ctrl"), curves.column("jawOpen") / 2, atol=0.05)
+    assert json.loads(out)["outputs"] == [str(tmp_path / "a.json"), str(tmp_path / "a.csv")]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [(["--db", "x.h5"], "needs no database"), (["-o", "a.c3d"], "suffix"), (["--face", "cast", "-o", "a.glb"], "is 5")],
+)
+def test_what_a_model_cannot_do_is_one_sentence(efase, artists_model, speech_path, tmp_path, monkeypatch, words, said):
+    monkeypatch.chdir(tmp_path)
+    before = sorted(tmp_path.iterdir())
+    code, _, err = efase("lipsync", speech_path, "--model", artists_model, "-o", "a.json", *words)
+    assert code == 2 and said in err and "Traceback" not in err
+    assert sorted(tmp_path.iterdir()) == before

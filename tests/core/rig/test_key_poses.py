@@ -3,9 +3,10 @@ import json
 import numpy as np
 import pytest
 
+from core.animeme.controls import ControlTrack
 from core.errors import UserFacingError
 from core.motion.marker_set import MarkerSet
-from core.rig.key_poses import KeyPoses, load_key_poses, posed_controls
+from core.rig.key_poses import KeyPoses, load_key_poses, posed_controls, share_controls
 from core.synthesis.marker_motion import MarkerMotion
 from tests.core.rig.small_rigs import small_rig
 
@@ -98,3 +99,12 @@ def test_another_rig_and_another_marker_set_are_refused():
     others = MarkerMotion(np.zeros((1, 1, 3), np.float32), 50.0, MarkerSet(("nose",), np.zeros((1, 3))))
     with pytest.raises(UserFacingError, match="'low'"):
         posed_controls(poses, rig, others)
+
+
+def test_shares_from_a_model_become_controls_in_whatever_order_they_come():
+    rig = small_rig()
+    poses = poses_of(rig)
+    shares = np.random.default_rng(6).uniform(0, 0.5, (9, 2))
+    track = share_controls(poses, rig, ControlTrack(poses.keys[::-1], shares[:, ::-1], 30.0, start_frame=4))
+    np.testing.assert_allclose(track.values, shares @ poses.values, atol=1e-6)
+    assert track.start_frame == 4 and track.names == rig.names
