@@ -106,6 +106,16 @@ class ImportDraft(QObject):
     def _on_facts(self, facts: Mapping[str, CaptureFacts]) -> None:
         self.facts.update(facts)
         self.learnt.emit()
+        if not self.plan.rigid and not self.plan.landmarks and self.first_facts() is not None:
+            self.jobs.start("propose", texts.MATCHING, self.plan, _proposals, self._on_proposals)
+
+    def _on_proposals(self, proposed: ImportPlan) -> None:
+        names = ("markers", "origin", "rigid", "groups", "landmarks", "reading")
+        axes_before = self.plan.reading.axes
+        self.change(texts.EDIT_PROPOSALS, **{name: getattr(proposed, name) for name in names})
+        if self.plan.reading.axes != axes_before:
+            self.facts = {}
+            self.read_facts()
 
     def first_facts(self) -> CaptureFacts | None:
         """Return what is known of the first sentence that can be read."""
@@ -193,6 +203,10 @@ def _look(paths: tuple[Path, ...], progress: Progress) -> _Found:
         return _Found(found, plan)
     progress.step(0.5, texts.MATCHING)
     try:
-        return _Found(found, with_proposals(plan, actress_marker_set()))
+        return _Found(found, _proposals(plan, progress))
     except UserFacingError as error:
         return _Found(found, plan, (error.message, error.remedy))
+
+
+def _proposals(plan: ImportPlan, _progress: Progress) -> ImportPlan:
+    return with_proposals(plan, actress_marker_set())

@@ -70,7 +70,9 @@ def face_picture(face: Face, view: FrontView) -> QImage:
 
 
 def _shades() -> list[QColor]:
-    """From the canvas towards the text colour, quiet enough to put dots on."""
-    dark, light = (np.array(QColor(css).getRgb()[:3], float) for css in (theme().canvas, theme().text))
-    shares = 0.08 + 0.42 * np.linspace(0.0, 1.0, _SHADES) ** 1.4
-    return [QColor(*(int(c) for c in dark + share * (light - dark))) for share in shares]
+    """From the canvas towards the text colour, quiet enough to put dots on; what is lit is the lighter one."""
+    canvas, ink = (QColor(css) for css in (theme().canvas, theme().text))
+    lit = np.linspace(0.0, 1.0, _SHADES) ** 1.4
+    shares = 0.08 + 0.42 * (lit if canvas.lightness() < ink.lightness() else 1.0 - lit)
+    ground, far = (np.array(css.getRgb()[:3], float) for css in (canvas, ink))
+    return [QColor(*(int(c) for c in ground + share * (far - ground))) for share in shares]

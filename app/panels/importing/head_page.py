@@ -133,6 +133,12 @@ class HeadPage(Page):
         self._fill(tuple(kept_markers(self.draft.plan, self.draft.first_facts().names).values()))
         self.draft.measured.emit()
 
+    def on_theme(self) -> None:
+        """See `Page.on_theme`."""
+        super().on_theme()
+        if self._residual is not None:
+            self._show_residual(self._residual)
+
     # Reactions
 
     def on_propose(self) -> None:

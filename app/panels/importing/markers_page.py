@@ -31,7 +31,7 @@ from app.texts import importing as texts
 from app.theme import STEP
 from core.motion.marker_set import MarkerSet
 
-_TABLE_PX = 380
+_TABLE_PX = 430
 
 
 class MarkersPage(Page):

@@ -156,7 +156,7 @@ class MatchView(QWidget):
         if self._face is None:
             return QImage()
         view = self.views()[1]
-        key = (view.area.width(), view.area.height(), view.middle_mm, view.px_per_mm)
+        key = (theme().canvas, view.area.width(), view.area.height(), view.middle_mm, view.px_per_mm)
         if self._picture is None or self._picture[0] != key:
             self._picture = key, face_picture(self._face, view)
         return self._picture[1]

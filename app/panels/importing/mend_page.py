@@ -73,17 +73,16 @@ class MendPage(Page):
         self.axis = Choice([(axis, axis, texts.MEND_AXIS_TIP) for axis in _AXES])
         self.axis.choose("y")
         self.note = label("", "plain")
-        legend = label()
-        legend.setTextFormat(Qt.TextFormat.RichText)
-        legend.setText(f"<span style='color:{theme().text}'>╌ {texts.MEND_LEGEND_BEFORE}</span> &nbsp; "
-                       f"<span style='color:{theme().accent}'>━ {texts.MEND_LEGEND_AFTER}</span>")  # fmt: skip
+        self.legend = label()
+        self.legend.setTextFormat(Qt.TextFormat.RichText)
+        self._dress_legend()
         row = QHBoxLayout()
         row.setSpacing(STEP)
         for widget in (label(texts.MEND_MARKER, "plain"), self.marker, self.axis, self.note):
             row.addWidget(widget)
         row.addStretch(1)
         self.total = label()
-        for widget in (self.total, legend):
+        for widget in (self.total, self.legend):
             row.addWidget(widget)
         self.body.addLayout(row)
         self.plot = themed_plot(texts.MEND_PLACE)
@@ -145,6 +144,16 @@ class MendPage(Page):
         self.draft.measured.emit()
         current = self.draft.current if self._picture is not None and self.draft.current in facts else None
         self.sentences.choose(self._order.index(current) if current else 0)
+
+    def on_theme(self) -> None:
+        """See `Page.on_theme`."""
+        super().on_theme()
+        self._dress_legend()
+        self._draw()
+
+    def _dress_legend(self) -> None:
+        self.legend.setText(f"<span style='color:{theme().text}'>╌ {texts.MEND_LEGEND_BEFORE}</span> &nbsp; "
+                            f"<span style='color:{theme().accent}'>━ {texts.MEND_LEGEND_AFTER}</span>")  # fmt: skip
 
     # Reactions
 

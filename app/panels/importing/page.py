@@ -76,6 +76,10 @@ class Page(QWidget):
     def refresh(self) -> None:
         """Show the plan as it is now."""
 
+    def on_theme(self) -> None:
+        """Paint all anew in the theme in use."""
+        self.on_changed()
+
     def _renew(self) -> None:
         self._stale = False
         self._stack.setCurrentIndex(int(self.is_ready))
@@ -127,7 +131,6 @@ class SentenceBox(QComboBox):
 def themed_plot(left: str, bottom: str = "") -> pg.PlotWidget:
     """Return an empty plot that looks like the workstation's others; ``left`` and ``bottom`` name its axes."""
     plot = pg.PlotWidget()
-    plot.setBackground(colour(theme().canvas))
     plot.setMenuEnabled(False)
     plot.hideButtons()
     plot.setMouseEnabled(x=False, y=False)
@@ -136,7 +139,14 @@ def themed_plot(left: str, bottom: str = "") -> pg.PlotWidget:
     if bottom:
         plot.setLabel("bottom", bottom)
     for side in ("left", "bottom"):
+        plot.getAxis(side).enableAutoSIPrefix(False)
+    dress_plot(plot)
+    return plot
+
+
+def dress_plot(plot: pg.PlotWidget) -> None:
+    """Give a plot the colours of the theme in use."""
+    plot.setBackground(colour(theme().canvas))
+    for side in ("left", "bottom"):
         plot.getAxis(side).setPen(colour(theme().line))
         plot.getAxis(side).setTextPen(colour(theme().dim))
-        plot.getAxis(side).enableAutoSIPrefix(False)
-    return plot

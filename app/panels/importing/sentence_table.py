@@ -48,7 +48,8 @@ class SentenceModel(QAbstractTableModel):
         """Return what is to be said of a sentence, and whether it cannot be imported."""
         facts = self._draft.facts.get(sentence.name)
         if facts is not None and facts.problem:
-            return [facts.problem], True
+            # the row names the file already
+            return [facts.problem.removeprefix(f"'{sentence.motion}' ")], True
         said = []
         if sentence.audio is None:
             said.append(texts.PROBLEM_NO_SOUND)
@@ -224,8 +225,13 @@ def dress(table: QTableView) -> None:
     header.setHighlightSections(False)
     header.setSectionResizeMode(QHeaderView.ResizeMode.Interactive)
     header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+    table.setStyleSheet(table_style())
+
+
+def table_style() -> str:
+    """Return the style sheet of a table in the theme in use."""
     t = theme()
-    table.setStyleSheet(
+    return (
         f"QTableView {{ background: {t.canvas}; border: 1px solid {t.line}; border-radius: 4px; outline: none;"
         f" selection-background-color: {t.line}; selection-color: {t.text}; }}"
         f"QTableView:focus {{ border-color: {t.dim}; }}"

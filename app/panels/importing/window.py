@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from pyqtgraph import PlotWidget
 from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import (
@@ -14,11 +15,13 @@ from PySide6.QtWidgets import (
     QListWidgetItem,
     QPushButton,
     QStackedWidget,
+    QTableView,
     QVBoxLayout,
     QWidget,
 )
 
 from app.authoring import Authoring
+from app.emotion_colours import emotion_colours
 from app.icons import icon
 from app.jobs import JobRunner
 from app.panels.importing.build_page import BuildPage
@@ -27,8 +30,9 @@ from app.panels.importing.files_page import FilesPage
 from app.panels.importing.head_page import HeadPage
 from app.panels.importing.markers_page import MarkersPage
 from app.panels.importing.mend_page import MendPage
-from app.panels.importing.page import Page
+from app.panels.importing.page import Page, dress_plot
 from app.panels.importing.review_page import ReviewPage
+from app.panels.importing.sentence_table import table_style
 from app.panels.importing.sound_page import SoundPage
 from app.panels.importing.speech_work import SpeechWork
 from app.panels.message_bar import MessageBar
@@ -69,6 +73,7 @@ class ImportWindow(QWidget):
         self.draft.failed.connect(self.message.say)
         self.draft.noted.connect(self.status.say)
         self.player.noted.connect(self.status.say)
+        emotion_colours.changed.connect(self.on_theme)
         self._add_keys()
         self.steps.setCurrentRow(0)
         self._show_states()
@@ -86,22 +91,9 @@ class ImportWindow(QWidget):
         return self.files, self.markers, self.head, self.mend, self.sound, self.review, self.build
 
     def _arrange(self) -> None:
-        t = theme()
-        # the platform's arrows and empty check boxes do not show on our ground
-        self.setStyleSheet(
-            "QSpinBox::up-button, QSpinBox::down-button, QDoubleSpinBox::up-button, QDoubleSpinBox::down-button"
-            " { width: 0; border: none; }"
-            f"QListWidget::indicator {{ width: 11px; height: 11px; border: 1px solid {t.dim}; border-radius: 2px; }}"
-            f"QListWidget::indicator:checked {{ background: {t.accent}; border-color: {t.accent}; }}"
-        )
         self.steps.setFixedWidth(_STEPS_PX)
         self.steps.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.steps.setStyleSheet(
-            f"QListWidget {{ background: {t.ground}; border: none; border-right: 1px solid {t.line}; border-radius: 0;"
-            f" padding-top: {STEP}px; }}"
-            f"QListWidget::item {{ padding: {STEP}px {2 * STEP}px; border-left: 2px solid transparent; }}"
-            f"QListWidget::item:selected {{ background: {t.raised}; border-left: 2px solid {t.accent}; }}"
-        )
+        self._dress()
         self.load_button = QPushButton(texts.LOAD_PLAN, toolTip=texts.LOAD_PLAN_TIP)
         self.save_button = QPushButton(texts.SAVE_PLAN, toolTip=texts.SAVE_PLAN_TIP)
         self.over_button = QPushButton(texts.START_OVER, toolTip=texts.START_OVER_TIP)
@@ -136,6 +128,32 @@ class ImportWindow(QWidget):
         column.addLayout(row)
         column.addWidget(_rule())
         column.addWidget(self.status)
+
+    def _dress(self) -> None:
+        t = theme()
+        # the platform's arrows and empty check boxes do not show on our ground
+        self.setStyleSheet(
+            "QSpinBox::up-button, QSpinBox::down-button, QDoubleSpinBox::up-button, QDoubleSpinBox::down-button"
+            " { width: 0; border: none; }"
+            f"QListWidget::indicator {{ width: 11px; height: 11px; border: 1px solid {t.dim}; border-radius: 2px; }}"
+            f"QListWidget::indicator:checked {{ background: {t.accent}; border-color: {t.accent}; }}"
+        )
+        self.steps.setStyleSheet(
+            f"QListWidget {{ background: {t.ground}; border: none; border-right: 1px solid {t.line}; border-radius: 0;"
+            f" padding-top: {STEP}px; }}"
+            f"QListWidget::item {{ padding: {STEP}px {2 * STEP}px; border-left: 2px solid transparent; }}"
+            f"QListWidget::item:selected {{ background: {t.raised}; border-left: 2px solid {t.accent}; }}"
+        )
+
+    def on_theme(self) -> None:
+        """Dress all that keeps colours of its own."""
+        self._dress()
+        for table in self.findChildren(QTableView):
+            table.setStyleSheet(table_style())
+        for plot in self.findChildren(PlotWidget):
+            dress_plot(plot)
+        for page in self.pages:
+            page.on_theme()
 
     def _add_keys(self) -> None:
         undo = self.draft.undo_stack
