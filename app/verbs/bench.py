@@ -156,13 +156,46 @@ def bench_suspicion(db: Database = None, json: Json = False) -> None:
     _tell(answer, suspicion_bench.as_table, json)
 
 
+@bench.command("mending")
+def bench_mending(
+    folder: Annotated[Path, typer.Argument(help="Folder laid out like animface-mocap.")], json: Json = False
+) -> None:
+    """Measure how well gaps, spikes and swaps put into real takes are mended, beside lines and splines."""
+    from app import mending_bench
+
+    with progress_bar("bench") as progress:
+        answer = mending_bench.bench_mending(folder, progress)
+    _tell(answer, mending_bench.as_table, json)
+
+
+@bench.command("offsets")
+def bench_offsets(
+    corpus: Annotated[Path | None, typer.Argument(help="Corpus folder; the demo's when absent.")] = None,
+    json: Json = False,
+) -> None:
+    """Measure how well a shift between motion and sound is told."""
+    from app import offset_bench
+    from app.demo import demo_corpus
+    from core.motion.readers.corpus_folder import read_corpus
+
+    with progress_bar("bench") as progress:
+        part = progress.part(0.0, 0.2)
+        read = demo_corpus(part) if corpus is None else read_corpus(corpus, part)
+        answer = offset_bench.bench_offsets(read, progress=progress.part(0.2, 1.0))
+    _tell(answer, offset_bench.as_table, json)
+
+
 @bench.command("window")
-def bench_window(db: Database = None, json: Json = False) -> None:
+def bench_window(
+    db: Database = None,
+    actions: Annotated[int, typer.Option(min=1, max=200, help="How many actions of the script.")] = 200,
+    json: Json = False,
+) -> None:
     """Measure how long the window keeps an animator waiting, in a session of 200 actions, and how soon it starts."""
     from app import window_bench
 
     with progress_bar("bench") as progress:
-        answer = window_bench.bench_window(db, progress)
+        answer = window_bench.bench_window(db, actions, progress)
     _tell(answer, window_bench.as_table, json)
 
 

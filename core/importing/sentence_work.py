@@ -44,7 +44,8 @@ def work_on(plan: ImportPlan, sentence: SentencePlan) -> WorkedSentence:
 
     Raises `UserFacingError` for files that cannot be used or do not fit each other.
     """
-    track = read_take(sentence, plan.reading)
+    take = read_take(sentence, plan.reading)
+    track = take.track
     if track.true_scale == plan.with_scale:
         raise UserFacingError(
             f"'{sentence.motion}' holds {'millimetres' if track.true_scale else 'points of a picture'}, and the "
@@ -55,7 +56,9 @@ def work_on(plan: ImportPlan, sentence: SentencePlan) -> WorkedSentence:
     duration_s = audio.duration_s if audio is not None else len(positions) / track.rate_hz
     transcript, text, alignment = _speech(plan, sentence, audio, duration_s)
     rigid = [names.index(name) for name in plan.rigid if name in names]
-    mended = mend(positions, names, track.rate_hz, plan.mending, rigid, model_of(plan.like, names, track))
+    # weights move all markers of a region at once: what looks like a fault of one is the artist's own
+    limits = plan.mending if take.is_captured else replace(plan.mending, faults=False)
+    mended = mend(positions, names, track.rate_hz, limits, rigid, model_of(plan.like, names, track))
     lips = [names.index(plan.landmarks[lip]) if plan.landmarks.get(lip) in names else None
             for lip in ("upper_lip", "lower_lip")]  # fmt: skip
     offset = None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -17,12 +17,21 @@ from core.motion.readers.blendshape_files import is_blendshape_file, read_blends
 _BLENDSHAPE_RATE_HZ = 30.0
 
 
-def read_take(sentence: SentencePlan, reading: Reading) -> MotionTrack:
+@dataclass(frozen=True)
+class Take:
+    """Motion as it was read; ``is_captured`` tells markers that were seen from those that weights made."""
+
+    track: MotionTrack
+    is_captured: bool
+
+
+def read_take(sentence: SentencePlan, reading: Reading) -> Take:
     """Read the motion of ``sentence``; blendshape weights become the markers of the default face.
 
     Raises `UserFacingError` for a file or a take that is not there or cannot be used.
     """
-    if is_blendshape_file(sentence.motion):
+    is_captured = not is_blendshape_file(sentence.motion)
+    if not is_captured:
         track = _weights_as_markers(sentence.motion, reading)
     else:
         takes = _takes(sentence.motion, ReadOptions(reading.rate_hz, reading.unit, reading.picture_px))
@@ -30,9 +39,9 @@ def read_take(sentence: SentencePlan, reading: Reading) -> MotionTrack:
         if track is None:
             raise UserFacingError(f"'{sentence.motion}' has no take '{sentence.take}'.")
     turn = axes_matrix(reading.axes)
-    if (turn == np.eye(3)).all():
-        return track
-    return replace(track, positions=np.asarray(track.positions @ turn.T, np.float32))
+    if (turn != np.eye(3)).any():
+        track = replace(track, positions=np.asarray(track.positions @ turn.T, np.float32))
+    return Take(track, is_captured)
 
 
 @lru_cache(maxsize=2)

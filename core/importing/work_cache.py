@@ -19,7 +19,7 @@ from core.motion.recording import Recording
 from core.speech.transcript import PhonemeUtterance, Transcript, WordUtterance
 
 # Raised whenever the work on a sentence changes.
-_VERSION = 1
+_VERSION = 2
 _UNREADABLE = (OSError, ValueError, KeyError, TypeError, IndexError, EOFError, zipfile.BadZipFile)
 
 
