@@ -135,7 +135,7 @@ def themed_plot(left: str, bottom: str = "") -> pg.PlotWidget:
     plot.hideButtons()
     plot.setMouseEnabled(x=False, y=False)
     plot.setLabel("left", left)
-    plot.getAxis("left").setWidth(6 * STEP)
+    plot.getAxis("left").setWidth(7 * STEP)
     if bottom:
         plot.setLabel("bottom", bottom)
     for side in ("left", "bottom"):

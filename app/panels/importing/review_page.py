@@ -37,6 +37,7 @@ class ReviewPage(Page):
         self.work, self.player = work, player
         self._order: list[str] = []
         self._shown: str | None = None
+        self._touched = False  # until the user has chosen, the least sure sentence is on show
         self._audio: Audio | None = None
         self._edited: dict[str, Transcript] = {}
         self.table = PlainTable(texts.REVIEW_COLUMNS, texts.REVIEW_COLUMN_TIPS, (0, 56, 92))
@@ -122,7 +123,7 @@ class ReviewPage(Page):
                   and judged[name].of_sentence < _UNSURE and not self.work.is_accepted(spoken[name])]  # fmt: skip
         self.table.chosen.disconnect(self.on_sentence)
         self.table.show_rows(rows, unsure)
-        if self.draft.current not in spoken:
+        if self.draft.current not in spoken or (not self._touched and None not in judged.values()):
             self.draft.current = self._order[0]
         self.table.choose(self._order.index(self.draft.current))
         self.table.chosen.connect(self.on_sentence)
@@ -166,6 +167,7 @@ class ReviewPage(Page):
 
     def on_sentence(self, row: int) -> None:
         """Show another sentence."""
+        self._touched = True
         self.player.pause()
         self.lanes.show_time(None)
         self.draft.current = self._order[row]
@@ -182,10 +184,11 @@ class ReviewPage(Page):
         if transcript is None:
             return
         self._edited.pop(name, None)
-        after = self._order[self._order.index(name) + 1 :]
+        self._touched = True
         self.work.accept(name, transcript)
-        by_name = {s.name: s for s in self.draft.sentences}
-        waiting = [other for other in after if not self.work.is_accepted(by_name[other])]
+        accepted = {s.name for s in self.draft.sentences if self.work.is_accepted(s)}
+        here = self._order.index(name)
+        waiting = [other for other in (*self._order[here:], *self._order[:here]) if other not in accepted]
         if waiting:
             self.draft.current = waiting[0]
         self.refresh()
@@ -212,6 +215,7 @@ class ReviewPage(Page):
             self.lanes.show_time(time_s)
 
     def _on_moved_boundary(self, transcript: Transcript) -> None:
+        self._touched = True
         self._edited[self.draft.current] = transcript
         self.revert.setEnabled(True)
 

@@ -180,7 +180,8 @@ class ImportWindow(QWidget):
         last = len(self.pages) - 1
         self.back_button.setEnabled(row > 0)
         self.next_button.setEnabled(row < last)
-        self.next_button.setText(texts.NEXT_STEP.format(title=self.pages[min(row + 1, last)].title))
+        following = texts.NEXT_STEP.format(title=self.pages[row + 1].title) if row < last else texts.NEXT
+        self.next_button.setText(following)
 
     def step(self, by: int) -> None:
         """Go back or forth."""
