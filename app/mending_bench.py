@@ -176,6 +176,7 @@ def as_table(answer: dict[str, object]) -> str:
     lines.append(f"gaps and spikes: mended {errors['mended']:.3f} mm RMS, linear {errors['linear']:.3f}, cubic "
                  f"{errors['cubic']:.3f} (both told where)")  # fmt: skip
     lines.append(f"{'jitter':>9} {'gap':>10} {'mended':>8} {'linear':>8} {'cubic':>8}  mm RMS")
-    lines += [f"{row['jitter_mm']:6.1f} mm {row['seconds']:8.2f} s {row['mended']:8.3f} {row['linear']:8.3f} {row['cubic']:8.3f}"
-              for row in answer["gaps"]]  # fmt: skip
+    for row in answer["gaps"]:
+        errors = "".join(f" {row[name]:8.3f}" for name in ("mended", "linear", "cubic"))
+        lines.append(f"{row['jitter_mm']:6.1f} mm {row['seconds']:8.2f} s{errors}")
     return "\n".join(lines)

@@ -91,7 +91,7 @@ def _some_takes(plan: ImportPlan) -> list[MotionTrack]:
     tracks, first_error = [], None
     for sentence in _spread(plan.sentences):
         try:
-            tracks.append(read_take(sentence, plan.reading).track)
+            tracks.append(read_take(sentence, plan.reading))
         except UserFacingError as error:
             first_error = first_error or error
     if not tracks:

@@ -15,7 +15,7 @@ from core.importing.pose_model import PoseModel
 from core.importing.report import SentenceReport
 from core.importing.sound_offset import OffsetEstimate, audio_offset, mouth_opening
 from core.importing.steady_markers import rigid_residual_mm
-from core.importing.takes import read_take
+from core.importing.takes import limits_for, read_take
 from core.media.audio import Audio, load_audio
 from core.motion.motion_track import MotionTrack
 from core.motion.recording import Recording
@@ -44,8 +44,7 @@ def work_on(plan: ImportPlan, sentence: SentencePlan) -> WorkedSentence:
 
     Raises `UserFacingError` for files that cannot be used or do not fit each other.
     """
-    take = read_take(sentence, plan.reading)
-    track = take.track
+    track = read_take(sentence, plan.reading)
     if track.true_scale == plan.with_scale:
         raise UserFacingError(
             f"'{sentence.motion}' holds {'millimetres' if track.true_scale else 'points of a picture'}, and the "
@@ -56,8 +55,7 @@ def work_on(plan: ImportPlan, sentence: SentencePlan) -> WorkedSentence:
     duration_s = audio.duration_s if audio is not None else len(positions) / track.rate_hz
     transcript, text, alignment = _speech(plan, sentence, audio, duration_s)
     rigid = [names.index(name) for name in plan.rigid if name in names]
-    # weights move all markers of a region at once: what looks like a fault of one is the artist's own
-    limits = plan.mending if take.is_captured else replace(plan.mending, faults=False)
+    limits = limits_for(sentence, plan.mending)
     mended = mend(positions, names, track.rate_hz, limits, rigid, model_of(plan.like, names, track))
     lips = [names.index(plan.landmarks[lip]) if plan.landmarks.get(lip) in names else None
             for lip in ("upper_lip", "lower_lip")]  # fmt: skip

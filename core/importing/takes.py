@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
 from core.errors import UserFacingError
-from core.importing.plan import Reading, SentencePlan, axes_matrix
+from core.importing.plan import MendLimits, Reading, SentencePlan, axes_matrix
 from core.motion.motion_files import read_takes
 from core.motion.motion_track import MotionTrack, ReadOptions
 from core.motion.readers.blendshape_files import is_blendshape_file, read_blendshapes
@@ -17,21 +17,12 @@ from core.motion.readers.blendshape_files import is_blendshape_file, read_blends
 _BLENDSHAPE_RATE_HZ = 30.0
 
 
-@dataclass(frozen=True)
-class Take:
-    """Motion as it was read; ``is_captured`` tells markers that were seen from those that weights made."""
-
-    track: MotionTrack
-    is_captured: bool
-
-
-def read_take(sentence: SentencePlan, reading: Reading) -> Take:
+def read_take(sentence: SentencePlan, reading: Reading) -> MotionTrack:
     """Read the motion of ``sentence``; blendshape weights become the markers of the default face.
 
     Raises `UserFacingError` for a file or a take that is not there or cannot be used.
     """
-    is_captured = not is_blendshape_file(sentence.motion)
-    if not is_captured:
+    if is_blendshape_file(sentence.motion):
         track = _weights_as_markers(sentence.motion, reading)
     else:
         takes = _takes(sentence.motion, ReadOptions(reading.rate_hz, reading.unit, reading.picture_px))
@@ -41,7 +32,15 @@ def read_take(sentence: SentencePlan, reading: Reading) -> Take:
     turn = axes_matrix(reading.axes)
     if (turn != np.eye(3)).any():
         track = replace(track, positions=np.asarray(track.positions @ turn.T, np.float32))
-    return Take(track, is_captured)
+    return track
+
+
+def limits_for(sentence: SentencePlan, limits: MendLimits) -> MendLimits:
+    """Return ``limits`` as they apply to a sentence: markers that weights made cannot have a capture's faults.
+
+    Weights move all markers of a region at once, so what looks like a spike is the animator's own.
+    """
+    return replace(limits, faults=False) if is_blendshape_file(sentence.motion) else limits
 
 
 @lru_cache(maxsize=2)
