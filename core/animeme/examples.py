@@ -10,9 +10,10 @@ import numpy as np
 
 from core.animeme.controls import ControlTrack
 from core.animeme.levels import N_PHONEMES
-from core.animeme.utterances import Utterances
+from core.animeme.utterances import Nearby, Utterances
 from core.errors import UserFacingError
 from core.speech.emotion import EmotionModifier
+from core.speech.phoneme import PHONEME_INDEX
 from core.speech.transcript import Transcript
 
 # Durations of a phoneme that was never said.
@@ -71,6 +72,11 @@ class Lesson:
             said_s = self.utterances.duration_s[self.utterances.phoneme == p]
             span[:, p] = said_s.min(), said_s.max()
         return span
+
+    def emphasis(self, phones: Sequence[str], count: float) -> np.ndarray:
+        """Return ``count`` for frames in which one of ``phones`` is said, else 1; float64, shape (n_frames,)."""
+        named = np.isin(self.utterances.phoneme, [PHONEME_INDEX[phone] for phone in phones])
+        return np.where(named[Nearby.of(self.utterances, self.times_s, 0).utterance], count, 1.0)
 
     def digest(self) -> str:
         """Return a hex digest of all that is learnt from."""

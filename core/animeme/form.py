@@ -23,6 +23,7 @@ class AnimemeForm:
     neighbours : phonemes before and after the current one that are summed over
     context_degree, duration_degree, emotion_degree : how much of the polynomial depends on the neighbours, the duration
         and the emotion (see `core.animeme.levels`); −1 for nothing
+    bilabial_emphasis : what an error counts while p, b or m is said: lips that do not meet are seen at once
     has_shared_widths : one σ1 and σ2 a phoneme for all controls, not one for each
     """
 
@@ -34,12 +35,13 @@ class AnimemeForm:
     context_degree: int = 3
     duration_degree: int = 1
     emotion_degree: int = 2
+    bilabial_emphasis: float = 8.0
     has_shared_widths: bool = True
 
     def __post_init__(self) -> None:
         if not 0 <= self.degree <= HIGHEST_DEGREE:
             raise UserFacingError(f"An animeme of degree {self.degree} cannot be.", f"Choose 0 to {HIGHEST_DEGREE}.")
-        if self.spread not in SPREADS or self.neighbours < 1 or self.edge < 0:
+        if self.spread not in SPREADS or self.neighbours < 1 or self.edge < 0 or self.bilabial_emphasis <= 0:
             raise ValueError(f"{self} is no form of an animeme")
 
     def as_dict(self) -> dict[str, object]:
@@ -54,7 +56,7 @@ class AnimemeForm:
 
 
 BEST = AnimemeForm()
-PRINTED = AnimemeForm(4, False, "duration", 0.0, 8, -1, -1, -1, True)
+PRINTED = AnimemeForm(4, False, "duration", 0.0, 8, -1, -1, 4, 1.0, True)
 COHEN_MASSARO = replace(PRINTED, degree=0)
 COHEN_MASSARO_NORMALISED = replace(COHEN_MASSARO, is_normalised=True)
 FORMS: Mapping[str, AnimemeForm] = {

@@ -17,9 +17,10 @@ _DENSE_COLUMNS = 500  # up to here a dense product is quicker than one of sparse
 class Solved:
     """Coefficients that are best for some widths, and how good that is.
 
-    loss : sum of squared residuals plus what the ridge asks
+    loss : sum of squared residuals, with emphasis, plus what the ridge asks
     coefficients : float64, shape (n_columns, U)
-    fitted, residual : float64, shape (n_frames, U)
+    fitted, residual : float64, shape (n_frames, U); the residual times the root of the emphasis
+    design : rows are frames, times the same
     """
 
     loss: float
@@ -36,17 +37,19 @@ class Regression:
     scene : the sentences over their frames
     shared : see `core.animeme.levels.sharing`; its columns with data only
     ridge : shape (n_columns,), frames
+    emphasis : float64, shape (n_frames,), what a squared residual counts in each frame
     """
 
-    def __init__(self, scene: Scene, shared: csr_matrix, ridge: np.ndarray) -> None:
+    def __init__(self, scene: Scene, shared: csr_matrix, ridge: np.ndarray, emphasis: np.ndarray) -> None:
         self.scene, self.shared, self.ridge = scene, shared, ridge
+        self._root = np.sqrt(emphasis)[:, None]
         self.said = np.unique(scene.utterances.phoneme)
         self._row = np.full(scene.phoneme.max(initial=0) + 1, -1)
         self._row[self.said] = np.arange(len(self.said))
 
     def solve(self, widths: np.ndarray, targets: np.ndarray) -> Solved:
         """E-step: the normal equations of equation 4, summed over occurrences (equation 6), with the ridge."""
-        design = self.scene.matrix(self.scene.weights(widths)) @ self.shared
+        design = (self.scene.matrix(self.scene.weights(widths)) @ self.shared).multiply(self._root).tocsr()
         if design.shape[1] <= _DENSE_COLUMNS:
             design = design.toarray()
         normal = design.T @ design
@@ -54,15 +57,16 @@ class Regression:
         # the floor keeps a model without a ridge solvable where two columns cannot be told apart
         normal[np.diag_indices_from(normal)] += self.ridge + 1e-10 * max(1.0, normal.diagonal().max(initial=0.0))
         factor = cho_factor(normal, overwrite_a=True)
-        coefficients = cho_solve(factor, design.T @ targets)
-        fitted = design @ coefficients
-        residual = targets - fitted
+        coefficients = cho_solve(factor, design.T @ (self._root * targets))
+        residual = self._root * targets - design @ coefficients
+        fitted = targets - residual / self._root
         loss = float((residual**2).sum() + (self.ridge[:, None] * coefficients**2).sum())
         return Solved(loss, coefficients, fitted, residual, design, factor)
 
     def loss(self, widths: np.ndarray, targets: np.ndarray, coefficients: np.ndarray) -> float:
         """Return what `solve` makes least, for coefficients that stay as they are."""
-        residual = targets - self.scene.matrix(self.scene.weights(widths)) @ (self.shared @ coefficients)
+        said = self.scene.matrix(self.scene.weights(widths)) @ (self.shared @ coefficients)
+        residual = self._root * (targets - said)
         return float((residual**2).sum() + (self.ridge[:, None] * coefficients**2).sum())
 
     def curvature(self, widths: np.ndarray, solved: Solved, is_projected: bool) -> tuple[np.ndarray, np.ndarray]:
@@ -87,7 +91,7 @@ class Regression:
         for u in range(solved.residual.shape[1]):
             one = shapes[:, u]
             jacobian = np.bincount(place, by_width * np.concatenate([one, one]), scene.n_frames * n_widths)
-            jacobian = jacobian.reshape(scene.n_frames, n_widths)
+            jacobian = jacobian.reshape(scene.n_frames, n_widths) * self._root
             squared += jacobian.T @ jacobian
             slope += jacobian.T @ solved.residual[:, u]
             if is_projected:

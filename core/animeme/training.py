@@ -23,6 +23,7 @@ from core.animeme.levels import N_PHONEMES, Level, levels_of, ridge_of, sharing
 from core.animeme.regression import Regression
 from core.animeme.utterances import Nearby
 from core.animeme.width_search import TrainingSettings, fit_widths, leading_axes
+from core.evaluation.measures import BILABIALS
 from core.progress import SILENT, Progress
 
 
@@ -81,8 +82,9 @@ def train_animemes(
     stacked = np.zeros((sum(level.n_columns for level in levels), n_controls))
     widths, losses = np.empty((n_groups, 2, N_PHONEMES)), []
     missed = np.zeros(n_controls)
-    of_widths, _ = _regression(scene, steady, span_s, lesson.rate_hz)
-    of_all, used = _regression(scene, levels, span_s, lesson.rate_hz)
+    emphasis = lesson.emphasis(BILABIALS, form.bilabial_emphasis)
+    of_widths, _ = _regression(scene, steady, span_s, lesson.rate_hz, emphasis)
+    of_all, used = _regression(scene, levels, span_s, lesson.rate_hz, emphasis)
     for g in range(n_groups):
         mine = group == g
         targets = offsets[:, mine] * importance[mine]
@@ -92,7 +94,7 @@ def train_animemes(
         stage.step(0.95, "solving for the animemes")
         solved = of_all.solve(widths[g], targets)
         stacked[np.ix_(used, mine)] = solved.coefficients / importance[mine]
-        missed[mine] = np.sqrt((solved.residual**2).mean(axis=0)) / importance[mine]
+        missed[mine] = np.sqrt(((targets - solved.fitted) ** 2).mean(axis=0)) / importance[mine]
         losses.append(tuple(loss / len(targets) for loss in state.losses))
     model = AnimemeModel(
         form, lesson.names, rest, widths, group, _by_level(levels, stacked), span_s, lesson.digest()
@@ -104,12 +106,12 @@ def train_animemes(
 
 
 def _regression(
-    scene: Scene, levels: Sequence[Level], span_s: np.ndarray, rate_hz: float
+    scene: Scene, levels: Sequence[Level], span_s: np.ndarray, rate_hz: float, emphasis: np.ndarray
 ) -> tuple[Regression, np.ndarray]:
     """Return the regression over ``levels``, and which of their columns have data."""
     shared = sharing(levels, scene.form.degree, scene.utterances, span_s)
     used = np.flatnonzero(shared.getnnz(axis=0))
-    return Regression(scene, shared[:, used], ridge_of(levels, rate_hz)[used]), used
+    return Regression(scene, shared[:, used], ridge_of(levels, rate_hz)[used], emphasis), used
 
 
 def _by_level(levels: Sequence[Level], stacked: np.ndarray) -> dict[str, np.ndarray]:

@@ -7,12 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.animeme import form as forms
 from core.animeme.animeme import load_animemes
-from core.animeme.form import BEST, PRINTED, AnimemeForm
+from core.animeme.form import BEST, AnimemeForm
 from core.errors import UserFacingError
 from core.speech.emotion import EmotionModifier
 from core.speech.phoneme import PHONEME_INDEX, VISEME_OF_PHONEME
 from core.speech.transcript import PhonemeUtterance, Transcript
+
+PRINTED = replace(forms.PRINTED, emotion_degree=-1)  # all that is said here is neutral
 
 
 def by_hand(model, transcript, time_s):

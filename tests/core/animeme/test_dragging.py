@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import pytest
 
+from core.animeme import form as forms
 from core.animeme.dragging import dragged, wander_when_dragged
-from core.animeme.form import PRINTED
+
+PRINTED = replace(forms.PRINTED, emotion_degree=-1)  # all that is said here is neutral
 
 
 def test_dragging_moves_what_follows_and_nothing_before(babble):

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from core.animeme.form import PRINTED
+from core.animeme import form as forms
 from core.animeme.mmm import smoothness_band, train_mmm
 from core.animeme.utterances import Utterances
 from core.speech.phoneme import PHONEME_INDEX
+
+PRINTED = replace(forms.PRINTED, emotion_degree=-1)  # all that is said here is neutral
 
 
 def dense(lengths, smoothness, order):

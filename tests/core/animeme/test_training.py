@@ -7,13 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.animeme import form as forms
 from core.animeme.examples import Lesson
-from core.animeme.form import BEST, COHEN_MASSARO, COHEN_MASSARO_NORMALISED, PRINTED
+from core.animeme.form import BEST, COHEN_MASSARO, COHEN_MASSARO_NORMALISED
 from core.animeme.training import train_animemes
 from core.animeme.width_search import TrainingSettings
 from core.errors import UserFacingError
 from core.progress import Cancelled, Progress
 from core.speech.phoneme import PHONEME_INDEX, VISEME_OF_PHONEME
+
+PRINTED = replace(forms.PRINTED, emotion_degree=-1)  # all that is said here is neutral
 
 EXACT = TrainingSettings(ridges_s={}, width_pull=0.0, least_gain=1e-12, most_steps=200)
 SAID = [PHONEME_INDEX[p] for p in ("pau", "b", "aa", "iy", "k", "s")]
@@ -159,3 +162,16 @@ def test_a_control_that_never_moves_stays_where_it_is(known_model, babble, taugh
     ]
     found = train_animemes(still, BEST, np.array([0.0, 0.5])).model
     np.testing.assert_allclose(found.curves(babble(1, seed=7)[0], 60.0).values[:, 1], 0.5)
+
+
+def test_what_is_emphasised_is_fitted_more_closely(known_model, babble, taught):
+    examples = taught(known_model(PRINTED), babble(10), noise=0.5)
+    off = []
+    for emphasis in (1.0, 50.0):
+        model = train_animemes(examples, replace(COHEN_MASSARO, bilabial_emphasis=emphasis)).model
+        lesson = Lesson.of(examples)
+        shut = lesson.emphasis(("b",), 2.0) == 2.0
+        errors = (model.values(lesson.utterances, lesson.times_s) - lesson.values) ** 2
+        off.append((errors[shut].mean(), errors[~shut].mean()))
+    assert off[1][0] < 0.8 * off[0][0]
+    assert off[1][1] > off[0][1]
