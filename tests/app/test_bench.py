@@ -6,6 +6,7 @@ import pytest
 from app.bench import BACKENDS, as_table, bench_search, utterance
 from app.demo import demo_database
 from core.errors import UserFacingError
+from core.search.transitions import TransitionCosts
 
 ASKED_FOR = {
     "phonemes", "nodes", "backend", "device", "cold_s", "pin_s", "refresh_s", "paint_s", "prices_s", "build_s",
@@ -50,7 +51,8 @@ def test_bytes_are_those_of_the_passes_over_the_matrix(answer):
 
 
 def test_beyond_the_memory_budget_only_the_relaxation_is_measured(monkeypatch):
-    monkeypatch.setattr("core.search.transitions.TransitionCosts.__init__.__defaults__", (1,))
+    others = TransitionCosts.__init__.__defaults__[1:]
+    monkeypatch.setattr("core.search.transitions.TransitionCosts.__init__.__defaults__", (1, *others))
     answer = bench_search(demo_database(), 200, (5,), ("opencl", "relaxation"), repeats=1)
     assert "memory budget" in answer["rows"][0]["missing"]
     assert answer["rows"][1]["cold_s"] > 0 and answer["rows"][1]["pin_s"] is None
