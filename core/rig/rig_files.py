@@ -14,6 +14,7 @@ from core.face.mesh_readers import RawMesh, read_mesh
 from core.progress import SILENT, Progress
 from core.rig.gltf_mesh import read_gltf_shapes
 from core.rig.rig import Rig
+from core.rig.teeth_room import with_room_for_teeth
 
 NEUTRAL_NAMES = ("neutral", "basis", "base", "rest", "default")
 GLTF_SUFFIXES = (".gltf", ".glb")
@@ -30,7 +31,7 @@ def load_rig(name: str, progress: Progress = SILENT) -> Rig:
     `UserFacingError` for what is missing, damaged, without shapes, or of unequal topology.
     """
     if name in CHARACTERS:
-        return Rig.of(character_face(name, progress))
+        return Rig.of(with_room_for_teeth(character_face(name, progress)))
     path = Path(name)
     if path.suffix.lower() in GLTF_SUFFIXES:
         mesh, shapes = read_gltf_shapes(path)
