@@ -117,15 +117,16 @@ def _run(command: list[str], environment: dict[str, str]) -> tuple[int | None, s
         try:
             _, said = process.communicate(timeout=_PICTURE_LIMIT_S)
         except subprocess.TimeoutExpired:
-            _end(process)
+            end_with_children(process)
             return None, ""
         except BaseException:
-            _end(process)
+            end_with_children(process)
             raise
         return process.returncode, said
 
 
-def _end(process: subprocess.Popen) -> None:
+def end_with_children(process: subprocess.Popen) -> None:
+    """End a process that was started in a session of its own, and all that it started."""
     # xvfb-run would leave its server and the window running
     if os.name == "posix":
         with contextlib.suppress(ProcessLookupError):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import faulthandler
+import os
 import re
 import tempfile
 import threading
@@ -26,15 +28,41 @@ class Block:
     """A while in which the main thread answered nothing.
 
     action : what the animator was doing
-    wall_s : how long; cpu_s : how much of that the main thread itself computed; the rest it waited, for a processor,
-        for Python's lock or for the display
-    where : functions of ours that it was in, innermost first; empty for a short one
+    wall_s : how long; of that the main thread computed for cpu_s, and for queued_s it was ready to but the machine's
+        processors did other things (0 where the system does not tell). The rest it waited for Python's lock, the
+        graphics driver's threads or the display
+    where : innermost function that it was in, and those of ours that called it; empty for a short one
     """
 
     action: str
     wall_s: float
     cpu_s: float
+    queued_s: float
     where: str
+
+    @property
+    def own_s(self) -> float:
+        """How long it would have been on a machine with a processor to spare for the main thread."""
+        return max(self.wall_s - self.queued_s, 0.0)
+
+
+class _MainThreadTimes:
+    """What the thread that makes it has computed and queued for so far; read and closed by that thread."""
+
+    def __init__(self) -> None:
+        self._schedule = None
+        with contextlib.suppress(OSError, AttributeError):
+            self._schedule = os.open(f"/proc/self/task/{threading.get_native_id()}/schedstat", os.O_RDONLY)
+
+    def read(self) -> tuple[float, float, float]:
+        """Return now, computed and queued, in s."""
+        queued_ns = 0 if self._schedule is None else int(os.pread(self._schedule, 64, 0).split()[1])
+        return time.perf_counter(), time.thread_time(), 1e-9 * queued_ns
+
+    def close(self) -> None:
+        """End."""
+        if self._schedule is not None:
+            os.close(self._schedule)
 
 
 class Watchdog(QObject):
@@ -50,6 +78,7 @@ class Watchdog(QObject):
         self.blocks: list[Block] = []
         self._where: dict[str, int] = {}
         self._main = threading.get_ident()
+        self._times = _MainThreadTimes()
         self._stop = threading.Event()
         self._dump = tempfile.TemporaryFile("w+", encoding="utf-8")  # noqa: SIM115  closed by `stop`
         self._beat = QTimer(self, interval=round(1000 * BEAT_S))
@@ -59,7 +88,7 @@ class Watchdog(QObject):
 
     def start(self) -> None:
         """Begin."""
-        self._last_s, self._last_cpu_s = time.perf_counter(), time.thread_time()
+        self._last = self._times.read()
         self._beat.start()
         self._looker.start()
 
@@ -69,18 +98,20 @@ class Watchdog(QObject):
         self._looker.join()
         self._dump.close()
         self._beat.stop()
+        self._times.close()
 
     def _on_beat(self) -> None:
-        now_s, cpu_s = time.perf_counter(), time.thread_time()
+        now = self._times.read()
+        wall_s, cpu_s, queued_s = (after - before for after, before in zip(now, self._last))
         seen = max(self._where, key=self._where.get) if self._where else ""
-        late_s = max(now_s - self._last_s - BEAT_S, 0.0)
-        self.blocks.append(Block(self.action, late_s, cpu_s - self._last_cpu_s, seen))
+        late_s = max(wall_s - BEAT_S, 0.0)
+        self.blocks.append(Block(self.action, late_s, cpu_s, min(queued_s, late_s), seen))
         self._where = {}
-        self._last_s, self._last_cpu_s = time.perf_counter(), time.thread_time()
+        self._last = self._times.read()
 
     def _look(self) -> None:
         while not self._stop.wait(_LOOK_EVERY_S):
-            if time.perf_counter() - self._last_s > _LOOK_AFTER_S:
+            if time.perf_counter() - self._last[0] > _LOOK_AFTER_S:
                 where = self._where_main_is()
                 self._where[where] = self._where.get(where, 0) + 1
 
@@ -92,8 +123,10 @@ class Watchdog(QObject):
         self._dump.seek(0)
         _, _, after = self._dump.read().partition(f"Thread 0x{self._main:016x}")
         lines = [_LINE.search(line) for line in after.split("Thread 0x")[0].split("Current thread")[0].splitlines()]
-        ours = [f"{Path(found[1]).name}:{found[2]} {found[3]}" for found in lines if found and _is_ours(found[1])]
-        return " < ".join(ours[:_DEPTH])
+        frames = [found for found in lines if found]
+        ours = [frame for frame in frames[1:] if _is_ours(frame[1])]
+        told = [f"{Path(frame[1]).name}:{frame[2]} {frame[3]}" for frame in (*frames[:1], *ours[:_DEPTH])]
+        return " < ".join(told)
 
 
 def _is_ours(path: str) -> bool:

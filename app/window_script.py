@@ -20,6 +20,8 @@ _CTRL, _SHIFT = Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.ShiftMo
 _SEED = 6
 _MOVE_MS, _GLANCE_MS, _LOOK_MS = 16, 60, 500
 _LONGEST_HOVER_MS = 1000
+# by then a dialog that nobody closes is in the way
+_STUCK_MS = 30_000
 
 # what, how often, and how long the animator looks at it afterwards
 ACTIONS = {
@@ -51,11 +53,13 @@ class ScriptedAnimator:
     """Does the script in a window that shows a sentence and its motion.
 
     hover_s : how long each hover took from the move of the mouse to the picture of the face
+    stuck : actions that did not come to an end by themselves
     """
 
     def __init__(self, window: MainWindow, watchdog: Watchdog) -> None:
         self.window, self.watchdog = window, watchdog
         self.hover_s: list[float] = []
+        self.stuck: list[str] = []
         self._random = random.Random(_SEED)
         self._do: dict[str, Callable[[], None]] = {
             "hover the map": self.hover, "select a phoneme": self.select, "step a frame": self.step,
@@ -72,12 +76,24 @@ class ScriptedAnimator:
             "export dialog": self.export_dialog,
         }  # fmt: skip
 
-    def perform(self, actions: list[str]) -> None:
-        """Do ``actions``, one after the other."""
-        for action in actions:
+    def perform(self, actions: list[str], begins: Callable[[int, str], None] = lambda _i, _action: None) -> None:
+        """Do ``actions``, one after the other; ``begins`` hears the number and name of each."""
+        for i, action in enumerate(actions):
+            begins(i, action)
             self.watchdog.action = action
+            stuck = QTimer(singleShot=True, interval=_STUCK_MS)
+            stuck.timeout.connect(self._end_stuck)
+            stuck.start()
             self._do[action]()
             pause(ACTIONS[action][1])
+            stuck.stop()
+
+    def _end_stuck(self) -> None:
+        """Close the dialog that keeps an action from its end."""
+        self.stuck.append(self.watchdog.action)
+        dialog = QApplication.activeModalWidget() or QApplication.activePopupWidget()
+        if dialog is not None:
+            dialog.close()
 
     # What is done
 
