@@ -85,7 +85,7 @@ class MendPage(Page):
         for widget in (self.total, self.legend):
             row.addWidget(widget)
         self.body.addLayout(row)
-        self.plot = themed_plot(texts.MEND_PLACE)
+        self.plot = themed_plot("")
         self.plot.setFixedHeight(_PLOT_PX)
         self.plot.setMouseEnabled(x=True, y=False)
         self.body.addWidget(self.plot)
@@ -191,6 +191,8 @@ class MendPage(Page):
         """Show the marker that it happened to, near the moment."""
         event = self._facts[self.draft.current].rows[row]
         self.marker.setCurrentText(event.marker)
+        if self._picture is not None and self._picture.sentence == self.draft.current:
+            self.axis.choose(_AXES[self._picture.most_changed(event)])
         self._draw()
         if self._picture is not None:
             rate_hz = self._picture.rate_hz
@@ -203,6 +205,8 @@ class MendPage(Page):
             return
         self.plot.setLabel("bottom", texts.RESIDUAL_TIME.format(name=shown.sentence))
         axis = _AXES.index(self.axis.key)
+        unit = texts.PIXELS if self.draft.plan.with_scale else texts.MILLIMETRES
+        self.plot.setLabel("left", texts.MEND_PLACE.format(unit=unit))
         times_s = np.arange(len(shown.before)) / shown.rate_hz
         for event in self._facts[shown.sentence].rows:
             if shown.names[row] in (event.marker, event.other):
@@ -213,4 +217,5 @@ class MendPage(Page):
                        connect="finite")  # fmt: skip
         self.plot.plot(times_s, shown.before[:, row, axis], connect="finite",
                        pen=pg.mkPen(colour(theme().text), width=1, style=Qt.PenStyle.DashLine))  # fmt: skip
+        self.plot.setAutoVisible(y=True)
         self.plot.enableAutoRange()

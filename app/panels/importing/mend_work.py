@@ -76,6 +76,12 @@ class MendPicture:
     before: np.ndarray
     after: np.ndarray
 
+    def most_changed(self, event: MendRow) -> int:
+        """Return the axis along which an event was mended most; y where nothing was there before."""
+        span, k = slice(event.start, event.stop), self.names.index(event.marker)
+        moved = np.abs(self.after[span, k] - self.before[span, k])
+        return int(np.nanmax(moved, axis=0).argmax()) if np.isfinite(moved).all() else 1
+
 
 def picture(request: tuple[ImportPlan, SentencePlan], progress: Progress) -> MendPicture:
     """Mend one sentence and keep all of it; a job."""

@@ -91,7 +91,7 @@ class SoundPage(Page):
         self.legend = label("", "plain")
         self.legend.setTextFormat(Qt.TextFormat.RichText)
         column.addWidget(self.legend)
-        self.plot = themed_plot(texts.OPENING_AXIS, texts.TIME_AXIS)
+        self.plot = themed_plot("", texts.TIME_AXIS)
         self.loud_view = pg.ViewBox(enableMouse=False, enableMenu=False)
         self.plot.scene().addItem(self.loud_view)
         self.loud_view.setXLink(self.plot.plotItem)
@@ -211,6 +211,8 @@ class SoundPage(Page):
             self.legend.setText(texts.NOTHING_HEARD.format(name=sentence.name))
             return
         out_s = self.work.taken_out_s(sentence)
+        unit = texts.PIXELS if self.draft.plan.with_scale else texts.MILLIMETRES
+        self.plot.setLabel("left", texts.OPENING_AXIS.format(unit=unit))
         mouth = texts.SOUND_LEGEND_MOUTH.format(ms=round(-1000 * out_s) + 0.0)
         self.legend.setText(f"<span style='color:{theme().dim}'>█ {texts.SOUND_LEGEND_LOUD}</span> &nbsp; "
                             f"<span style='color:{theme().accent}'>━ {mouth}</span>")  # fmt: skip
