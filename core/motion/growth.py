@@ -7,6 +7,7 @@ not touched. Every change is written beside the database and swapped in: a cut l
 from __future__ import annotations
 
 import itertools
+import os
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -229,6 +230,7 @@ def _changed(
     """Change ``database``, whose open HDF5 file is ``file``, and store it at ``target``."""
     began = time.perf_counter()
     settings, target = settings or GrowthSettings(), Path(target)
+    as_it_was = Path(database.path).stat()
     _check_names(database, newcomers)
     part = MotionPart.of_database(database).without(removed, np.array([database.nodes.row(n) for n in dropped], int))
     if newcomers.part is not None:
@@ -255,6 +257,9 @@ def _changed(
         write_database(grown, beside, itertools.chain(audio, newcomers.audio), [*apart, *newcomers.apart],
                        faces.kept(names) if with_captures else ())  # fmt: skip
         file.close()  # Windows replaces nothing that is open
+        # tuning stores weights without the lock, and they shall not be lost
+        if not os.path.samestat(as_it_was, Path(database.path).stat()):
+            raise UserFacingError(f"The database '{database.path}' was changed by another process.", "Try once more.")
     return GrowthReport(grown, database.content_hash, newcomers.names, removed, dropped, settings.refit,
                         *newcomers.fit(database), *_told_apart(database.maps, maps),
                         time.perf_counter() - began)  # fmt: skip
@@ -293,7 +298,7 @@ def _check_names(database: MotionDatabase, newcomers: Newcomers) -> None:
         if name in known:
             raise UserFacingError(
                 f"The database '{database.name}' has a sentence '{name}' already.",
-                "Remove it first, or give the new ones other names.",
+                "Remove it first, or give the new ones other names (--prefix for those of a database).",
             )
 
 

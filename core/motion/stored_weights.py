@@ -50,8 +50,8 @@ def _rewritten(database: MotionDatabase, weights: SearchWeights, tuning: Mapping
     if database.path is None:
         raise UserFacingError(f"The database '{database.name}' has no file to keep weights in.")
     path = Path(database.path)
-    # changed in memory, for HDF5 ends the process when a disk fills up under it
-    with h5py.File(path, "r+", driver="core", backing_store=False) as file:
+    # changed in memory, for HDF5 ends the process when a disk fills up under it; so there is nothing to lock
+    with h5py.File(path, "r+", driver="core", backing_store=False, locking=False) as file:
         file.attrs["weights"] = json.dumps(weights.as_dict())
         file.attrs["tuning"] = json.dumps(dict(tuning))
         file.flush()

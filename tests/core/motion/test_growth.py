@@ -24,6 +24,7 @@ from core.motion.growth import (
 )
 from core.motion.node import NodeTable
 from core.motion.stored_weights import SEARCH, store_tuned
+from core.progress import Progress
 from core.search.weights import SearchWeights
 from tests.core.motion.growing import NAMES, REST, corpus_of
 
@@ -244,6 +245,19 @@ def test_other_markers_and_another_face_are_refused(path, tmp_path):
     build_database(replace(corpus, rest=REST * 1.4), tmp_path / "giant.h5", SETTINGS)
     with pytest.raises(UserFacingError, match="not of one actor"):
         add_database(path, tmp_path / "giant.h5")
+
+
+def test_weights_that_are_stored_meanwhile_are_not_lost(path):
+    database = build_database(corpus_of(0), path, SETTINGS)
+
+    class Tunes(Progress):
+        def step(self, fraction, message=""):
+            if message == "writing the database":
+                store_tuned(database, {"tuned": SEARCH, "weights": SearchWeights(pnt=3.5).as_dict()})
+
+    with pytest.raises(UserFacingError, match="changed by another process"):
+        add_corpus(path, corpus_of(1), progress=Tunes())
+    assert open_database(path).weights == SearchWeights(pnt=3.5)
 
 
 def test_sentences_that_overlap_are_damage(path, tmp_path):
