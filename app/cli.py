@@ -49,6 +49,7 @@ app.command("export")(motion.export_project)
 app.command("import")(importing.import_captures)
 app.command()(pipeline.lipsync)
 app.command()(pipeline.curves)
+app.command()(pipeline.poses)
 
 
 def main() -> None:

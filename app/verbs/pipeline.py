@@ -1,4 +1,4 @@
-"""Verbs that speak to other programs: lipsync, curves."""
+"""Verbs that speak to other programs: lipsync, curves, poses."""
 
 from __future__ import annotations
 
@@ -93,6 +93,23 @@ def curves(
     )  # fmt: skip
     with progress_bar("curves") as progress:
         answer = run(CurveJob(track, tuple(output), names, rate, mapping, audio, face, video), progress)
+    _tell_written(answer, json)
+
+
+def poses(
+    output: Annotated[Path, typer.Option("--output", "-o", help="File of poses to write (.json).")],
+    db: Database = None,
+    face: Annotated[
+        str, typer.Option(help="The rig: a glTF with morph targets, a folder of OBJ files ...")
+    ] = "default",
+    keys: Annotated[int, typer.Option(min=2, max=40, help="How many key lip shapes.")] = 7,
+    json: Json = False,
+) -> None:
+    """Choose key lip shapes of a database and pose a rig for them, for an artist to go on from."""
+    from app.first_poses import run
+
+    with progress_bar("poses") as progress:
+        answer = run(output, db, face, keys, progress)
     _tell_written(answer, json)
 
 

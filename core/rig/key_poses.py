@@ -17,6 +17,7 @@ from core.face.face import Face
 from core.media.swap_in import swapped_in
 from core.motion.database import MotionDatabase
 from core.motion.marker_set import MarkerSet
+from core.rig.control_names import control_mixing
 from core.rig.rig import Rig
 from core.speech.text_file import read_text
 from core.synthesis.marker_motion import MarkerMotion
@@ -98,12 +99,14 @@ def default_poses(face: Face, markers: MarkerSet, lips: np.ndarray, lips_mm: np.
     return KeyPoses(face.name, keys, tuple(markers.names[k] for k in lips), np.asarray(lips_mm, float), names, values)
 
 
-def unposed(rig: Rig, markers: MarkerSet, lips: np.ndarray, lips_mm: np.ndarray) -> KeyPoses:
-    """Return poses at rest for a rig that markers cannot be laid on, for an artist to begin with."""
-    keys = tuple(f"lips{n + 1}" for n in range(len(lips_mm)))
-    values = np.zeros((len(keys), len(rig.names)))
-    return KeyPoses(rig.face.name, keys, tuple(markers.names[k] for k in lips), np.asarray(lips_mm, float),
-                    rig.names, values)  # fmt: skip
+def first_poses(rig: Rig, face: Face, markers: MarkerSet, lips: np.ndarray, lips_mm: np.ndarray) -> KeyPoses:
+    """Pose any rig for an artist to go on from: as ``face`` would, where controls match by name, else at rest.
+
+    face : one with ARKit's units that the markers can be laid on, such as the default face; see `default_poses`
+    """
+    known = default_poses(face, markers, lips, lips_mm)
+    values = np.clip(known.values @ control_mixing(known.controls, rig.names), 0.0, 1.0)
+    return replace(known, rig=rig.face.name, controls=rig.names, values=values)
 
 
 def posed_controls(poses: KeyPoses, rig: Rig, motion: MarkerMotion) -> ControlTrack:

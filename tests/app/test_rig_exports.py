@@ -22,7 +22,7 @@ from core.motion.build import BuildSettings, build_database
 from core.motion.live_link_face import read_live_link_face
 from core.pipeline.curves import read_curves_json, write_curves_csv, write_curves_json
 from core.pipeline.gltf import write_glb
-from core.rig.key_poses import default_poses
+from core.rig.key_poses import default_poses, load_key_poses
 from core.rig.rig import Rig, posed
 from core.rig.rig_files import load_rig
 from core.speech.transcript import PhonemeUtterance, Transcript
@@ -30,6 +30,8 @@ from core.synthesis.marker_motion import MarkerMotion
 from tests.core.rig.small_rigs import small_rig
 
 SPEECH = Transcript.covering([PhonemeUtterance("aa", 0.0, 1.0)], [], 1.0)
+LANDMARKS = {"outer_eye_left": "ring1", "outer_eye_right": "ring5", "brow_left": "ring2", "brow_right": "ring4",
+             "chin": "ring9", "upper_lip": "lip_up", "lower_lip": "lip_low"}  # fmt: skip
 AUDIO = Audio(np.sin(np.arange(16_000) / 9).astype(np.float32), 16_000)
 
 
@@ -155,9 +157,7 @@ def test_bad_requests_are_one_sentence(efase, tmp_path, monkeypatch, words, said
 
 
 def test_lipsync_writes_the_weights_of_arkit(efase, face, tiny_corpus, speech_path, tmp_path):
-    landmarks = {"outer_eye_left": "ring1", "outer_eye_right": "ring5", "brow_left": "ring2", "brow_right": "ring4",
-                 "chin": "ring9", "upper_lip": "lip_up", "lower_lip": "lip_low"}  # fmt: skip
-    build_database(replace(tiny_corpus(), landmarks=landmarks), tmp_path / "a.h5", BuildSettings(rate_hz=60.0))
+    build_database(replace(tiny_corpus(), landmarks=LANDMARKS), tmp_path / "a.h5", BuildSettings(rate_hz=60.0))
     code, out, err = efase("lipsync", speech_path, "--phones", speech_path.with_suffix(".lab"), "--db",
                            tmp_path / "a.h5", "-o", tmp_path / "a.csv", "-o", tmp_path / "a.glb", "--json")  # fmt: skip
     assert code == 0, err
@@ -213,3 +213,16 @@ def test_what_a_model_cannot_do_is_one_sentence(efase, artists_model, speech_pat
     code, _, err = efase("lipsync", speech_path, "--model", artists_model, "-o", "a.json", *words)
     assert code == 2 and said in err and "Traceback" not in err
     assert sorted(tmp_path.iterdir()) == before
+
+
+def test_a_rig_is_posed_by_names_for_an_artist_to_go_on_from(efase, face, tiny_corpus, tmp_path):
+    build_database(replace(tiny_corpus(), landmarks=LANDMARKS), tmp_path / "a.h5", BuildSettings(rate_hz=60.0))
+    for name, controls in (("arkit", ("JawOpen", "other")), ("strange", ("a", "b"))):
+        rig = small_rig(names=controls)
+        write_glb(rig, ControlTrack(controls, np.zeros((1, 2)), 25.0), tmp_path / f"{name}.glb")
+        code, _, err = efase("poses", "--db", tmp_path / "a.h5", "--face", tmp_path / f"{name}.glb", "--keys", "3",
+                             "-o", tmp_path / f"{name}.json")  # fmt: skip
+        assert code == 0, err
+        poses = load_key_poses(tmp_path / f"{name}.json")
+        assert poses.controls == controls and poses.markers == ("lip_up", "lip_low")
+        assert poses.values[:, 0].any() == (name == "arkit") and ("at rest" in err) == (name == "strange")
