@@ -35,7 +35,7 @@ class AnimemeForm:
     context_degree: int = 3
     duration_degree: int = 1
     emotion_degree: int = 2
-    bilabial_emphasis: float = 8.0
+    bilabial_emphasis: float = 3.0
     has_shared_widths: bool = True
 
     def __post_init__(self) -> None:
