@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QAction, QActionGroup, QKeySequence
-from PySide6.QtWidgets import QAbstractButton, QComboBox, QMainWindow, QMenu
+from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QMainWindow, QMenu, QWidget
 
 from app import texts
 from core.media.video import FRAME_RATES
@@ -57,11 +57,29 @@ def frame_rate_options() -> dict[str, str]:
 
 
 class ButtonKeys(QObject):
-    """Leaves Space to a button or list that was reached by Tab; everywhere else it plays."""
+    """Leaves Space to a button or list that was reached by Tab; everywhere else it plays.
 
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+    It looks at the events of what has the focus alone: one that looks at all holds each of them up, as it has to wait
+    for Python's lock.
+    """
+
+    def __init__(self, parent: QObject) -> None:
+        super().__init__(parent)
+        QApplication.instance().focusChanged.connect(self._on_focus_changed)
+
+    def stop(self) -> None:
+        """End."""
+        QApplication.instance().focusChanged.disconnect(self._on_focus_changed)
+
+    def _on_focus_changed(self, old: QWidget | None, new: QWidget | None) -> None:
+        if old is not None:
+            old.removeEventFilter(self)
+        if isinstance(new, QAbstractButton | QComboBox):
+            new.installEventFilter(self)
+
+    def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
         """Take Space and Return from the shortcuts while a button or list has the focus."""
-        is_key = event.type() == QEvent.Type.ShortcutOverride and isinstance(watched, QAbstractButton | QComboBox)
+        is_key = event.type() == QEvent.Type.ShortcutOverride
         if is_key and event.key() in _PRESS_KEYS and not event.modifiers():
             event.accept()
             return True

@@ -13,6 +13,7 @@ from core.errors import UserFacingError
 from core.face.face import Face
 from core.folders import cache_dir
 from core.media.swap_in import swapped_in
+from gpu.gl.face_arrays import FaceArrays
 
 VERSION = 1  # raise it when `gpu.gl.face` shades otherwise
 
@@ -26,26 +27,36 @@ def light_path(face: Face) -> Path:
 
 
 class FaceLight:
-    """Light of the face on show, for the views that share it."""
+    """Light of the face on show, for the views that share it and the worker that prepares them."""
 
     def __init__(self) -> None:
-        self._face: Face | None = None
-        self._light: np.ndarray | None = None
+        # replaced as a whole, as more threads than one look at it
+        self._known: tuple[Face | None, np.ndarray | None] = None, None
 
     def of(self, face: Face) -> np.ndarray | None:
         """Return the light, 0..1, shape (n_vertices,); None where nobody has worked it out."""
-        if self._face is not face:
-            self._face, self._light = face, _read(light_path(face), len(face.positions))
-        return self._light
+        known, light = self._known
+        if known is not face:
+            light = _read(light_path(face), len(face.positions))
+            self._known = face, light
+        return light
 
     def keep(self, face: Face, light: np.ndarray) -> None:
         """Remember the light; a cache that cannot be written costs only time."""
-        self._face, self._light = face, light
+        self._known = face, light
         path = light_path(face)
         with contextlib.suppress(OSError, UserFacingError):
             path.parent.mkdir(parents=True, exist_ok=True)
             with swapped_in(path) as beside, beside.open("wb") as file:
                 np.save(file, light)
+
+    def prepare(self, face: Face, arrays: FaceArrays) -> None:
+        """Work the light out where nobody has, on a driver of this thread's own; without one the first view does."""
+        from gpu.gl.offscreen import OffscreenRenderer
+
+        if self.of(face) is None:
+            with contextlib.suppress(UserFacingError), OffscreenRenderer(1, 1, samples=0) as offscreen:
+                self.keep(face, arrays.light(offscreen.ctx))
 
 
 @lru_cache(maxsize=1)

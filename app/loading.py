@@ -147,12 +147,16 @@ def save_emotions(request: tuple[tuple[EmotionModifier, ...], float, Path], _pro
 
 
 def fit_face(request: tuple[FaceChoice, MarkerSet], progress: Progress) -> FaceRig:
-    """Bind a face to a marker set."""
-    import scipy.spatial  # noqa: F401  the renderer takes a while to import it, and would on the main thread
+    """Bind a face to a marker set, and work out what its views would have to on the main thread."""
+    from app.face_light import face_light
+    from gpu.gl.complexion import grain
 
     face, markers = request
     marker_file = None if face.marker_file is None else Path(face.marker_file)
-    return FaceRig.of(face.name, markers, marker_file, progress)
+    rig = FaceRig.of(face.name, markers, marker_file, progress)
+    grain()
+    face_light().prepare(rig.face, rig.arrays)
+    return rig
 
 
 def _holds_times(path: Path) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -21,6 +21,9 @@ from core.motion.marker_set import MarkerSet
 from core.progress import SILENT, Progress
 from core.synthesis.marker_motion import MarkerMotion
 from core.synthesis.pose_tracks import PoseTracks
+
+if TYPE_CHECKING:
+    from gpu.gl.face_arrays import FaceArrays
 
 DEFAULT_FACE = "default"
 STYLES = ("face", "shaded", "wireframe", "markers")
@@ -77,6 +80,13 @@ class FaceRig:
         progress.step(0.5, "measuring the face's surface")
         skin = cached_skin(shown, vertices, markers)
         return cls(shown, vertices, skin, Eyelids.of(shown, vertices, markers), LipContact.of(shown))
+
+    @cached_property
+    def arrays(self) -> FaceArrays:
+        """What a renderer uploads of the face."""
+        from gpu.gl.face_arrays import FaceArrays
+
+        return FaceArrays.of(self.face)
 
     @cached_property
     def _parts(self) -> MovingParts:

@@ -54,7 +54,6 @@ class MainWindow(AskingWindow):
         self.status = StatusLine(authoring.jobs)
         self._arrange()
         self._button_keys = ButtonKeys(self)
-        QApplication.instance().installEventFilter(self._button_keys)
         self.actions = Actions(self)
         self.lexicon = LexiconDialog(authoring.jobs, self)
         self.export_dialog = ExportDialog(authoring, self.settings, self)
@@ -235,7 +234,7 @@ class MainWindow(AskingWindow):
         for pane in (self.motion, self.preview):
             pane.face_view.release()
         self.video.release()
-        QApplication.instance().removeEventFilter(self._button_keys)
+        self._button_keys.stop()
         self._garbage.stop()
         super().closeEvent(event)
 

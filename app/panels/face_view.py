@@ -6,7 +6,7 @@ import logging
 from dataclasses import replace
 
 import numpy as np
-from PySide6.QtCore import QPointF, Qt
+from PySide6.QtCore import QPointF, Qt, QTimer
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
 
 from app import texts
@@ -17,6 +17,7 @@ from app.pictures import FaceRig
 from core.motion.marker_set import MarkerSet
 from gpu.gl.camera import Camera, portrait_bounds
 from gpu.gl.face import FaceRenderer, Style
+from gpu.gl.libraries import library_names
 
 log = logging.getLogger("gpu")
 
@@ -49,6 +50,7 @@ class FaceView(QOpenGLWidget):
         self._trails: np.ndarray | None = None
         self._ghost_shape = (0, 0, 0)
         self._style = Style.TEXTURED
+        self._drawn_style: Style | None = None
         self._front: dict[bool, Camera] = {}
         self._camera: dict[bool, Camera] = {}
         self._drag_from: QPointF | None = None
@@ -136,10 +138,10 @@ class FaceView(QOpenGLWidget):
     def _upload(self, renderer: FaceRenderer) -> None:
         if self._stale["face"] and self._rig is not None:
             light = face_light().of(self._rig.face)
-            renderer.set_face(self._rig.face, light=light)
+            renderer.set_face(self._rig.face, light=light, arrays=self._rig.arrays)
             if light is None:
                 face_light().keep(self._rig.face, renderer.light)
-            self._stale["face"] = False
+            self._stale["face"], self._drawn_style = False, None
         if self._stale["markers"] and self._markers is not None:
             colours = np.tile(_MARKER_COLOUR, (len(self._markers), 1))
             colours[self._markers.group("lips")] = _LIP_COLOUR
@@ -188,10 +190,15 @@ class FaceView(QOpenGLWidget):
         """Make the GL objects; a widget moved to another window comes here again, with a new context."""
         import moderngl
 
-        self._ctx = moderngl.create_context(require=330)
+        self._ctx = moderngl.create_context(require=330, **library_names("libgl", "libx11"))
         self._renderer = FaceRenderer(self._ctx)
         self._stale = dict.fromkeys(self._stale, True)
         self._ghost_shape = (0, 0, 0)
+
+    def resizeEvent(self, event) -> None:
+        """Keep the ring around it."""
+        super().resizeEvent(event)
+        self.focus_ring.fit()
 
     def paintGL(self) -> None:
         """Draw the pose."""
@@ -199,7 +206,13 @@ class FaceView(QOpenGLWidget):
             return
         self._upload(self._renderer)
         framebuffer = self._ctx.detect_framebuffer(self.defaultFramebufferObject())
-        self._renderer.draw(framebuffer, self.camera or Camera(), self._style if self.shows_mesh else Style.MARKERS)
+        camera, style = self.camera or Camera(), self._style if self.shows_mesh else Style.MARKERS
+        if self._renderer.draw(framebuffer, camera, style, new_at_most=1):
+            self._drawn_style = style
+            return
+        if self._drawn_style is not None:  # rather than none at all, until the new one is made
+            self._renderer.draw(framebuffer, camera, self._drawn_style)
+        QTimer.singleShot(0, self, self.update)
 
     def mousePressEvent(self, event) -> None:
         """Begin to turn or move."""

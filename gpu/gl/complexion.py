@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from core.face.face import PARTS, Face
@@ -160,14 +162,17 @@ def eyeball_centre(ball: np.ndarray) -> np.ndarray:
     return centre
 
 
+@lru_cache(maxsize=1)
 def grain(size: int = 32, seed: int = 7) -> np.ndarray:
-    """Return smooth noise that repeats, uint8, shape (size, size, size, 4), spread over 0..255."""
+    """Return smooth noise that repeats, uint8, shape (size, size, size, 4), spread over 0..255; it is read-only."""
     smooth = np.random.default_rng(seed).standard_normal((size, size, size, 4))
     # a Gaussian of one voxel; scipy's would take a third of a second to import, before the window's first picture
     shares = np.exp(-0.5 * np.arange(-4, 5) ** 2)
     for axis in range(3):
         smooth = sum(share * np.roll(smooth, k, axis) for k, share in zip(range(-4, 5), shares / shares.sum()))
-    return np.clip(128 + 52 * smooth / smooth.std(), 0, 255).astype(np.uint8)
+    noise = np.clip(128 + 52 * smooth / smooth.std(), 0, 255).astype(np.uint8)
+    noise.setflags(write=False)
+    return noise
 
 
 def lip_weights(face: Face) -> np.ndarray:

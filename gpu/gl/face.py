@@ -10,12 +10,10 @@ import numpy as np
 from core.face.face import Face
 from gpu.gl import complexion
 from gpu.gl.camera import Camera
-from gpu.gl.complexion import LOWER_TEETH, SKIN, SOCKET, TONGUE, UPPER_TEETH
+from gpu.gl.face_arrays import FaceArrays
 from gpu.gl.markers import MarkerCloud
-from gpu.gl.normals import VertexNormals
-from gpu.gl.occlusion import openness
 from gpu.gl.program import compile_program
-from gpu.gl.surfaces import FaceSurfaces, kind_of_triangles
+from gpu.gl.surfaces import FaceSurfaces
 
 # width of the texture that holds one byte a triangle
 _EDGE_ROW = 2048
@@ -56,38 +54,39 @@ class FaceRenderer:
         self.light: np.ndarray | None = None
         self._mesh: list = []
 
-    def set_face(self, face: Face, lips: np.ndarray | None = None, light: np.ndarray | None = None) -> None:
+    def set_face(
+        self,
+        face: Face,
+        lips: np.ndarray | None = None,
+        light: np.ndarray | None = None,
+        arrays: FaceArrays | None = None,
+    ) -> None:
         """Show another face, at rest.
 
         lips : how red each vertex is, 0..1, shape (n_vertices,); None: guessed from the landmarks
         light : `light` of another renderer that shows the same face, which spares the tenth of a second it takes
+        arrays : `FaceArrays.of` of the face, where somebody has worked them out
         """
         self._free_mesh()
-        rest = np.ascontiguousarray(face.positions, np.float32)
-        material = complexion.materials(face)
-        triangles = _facing_out(np.asarray(face.triangles, np.int32), rest)
-        kind = kind_of_triangles(face, triangles)
-        order = np.argsort(kind, kind="stable")
-        triangles = np.ascontiguousarray(triangles[order])
-        self._normals = VertexNormals(triangles, rest)
+        known = FaceArrays.of(face) if arrays is None else arrays
+        rest, triangles = known.rest, known.triangles
+        self._normals = known.normals
         normals = self._normals(rest)
+        self.light = known.light(self._ctx) if light is None else light
         surface = np.empty((len(rest), 4), np.float32)
-        surface[:, 0] = material
-        surface[:, 1] = complexion.lip_weights(face) if lips is None else lips
-        self.light = self._openness(rest, normals, triangles, material) if light is None else light
+        surface[:, 0] = known.material
+        surface[:, 1] = known.lips if lips is None else lips
         surface[:, 2] = self.light
-        surface[:, 3] = complexion.blush_weights(face)
-        growth = [complexion.hair_depth(face), complexion.beard_weights(face), complexion.edge_fade(face)]
-        hair = np.column_stack(growth).astype(np.float32)
+        surface[:, 3] = known.blush
         uv = np.zeros((len(rest), 2), np.float32) if face.uv is None else np.ascontiguousarray(face.uv, np.float32)
-        self._hair_lift = complexion.hair_lift(face)
+        self._hair_lift = known.hair_lift
         self._haired = np.flatnonzero(self._hair_lift > 0)
 
         ctx = self._ctx
         self._positions = ctx.buffer(rest.tobytes(), dynamic=True)
         self._normal_buffer = ctx.buffer(normals.tobytes(), dynamic=True)
-        places, surfaces = ctx.buffer(complexion.rest_places(face).tobytes()), ctx.buffer(surface.tobytes())
-        hairs, uvs = ctx.buffer(hair.tobytes()), ctx.buffer(uv.tobytes())
+        places, surfaces = ctx.buffer(known.places.tobytes()), ctx.buffer(surface.tobytes())
+        hairs, uvs = ctx.buffer(known.hair.tobytes()), ctx.buffer(uv.tobytes())
         indices = ctx.buffer(triangles.tobytes())
         inputs = [
             (self._positions, "3f", "in_position"),
@@ -97,10 +96,10 @@ class FaceRenderer:
             (hairs, "3f", "in_hair"),
             (uvs, "2f", "in_uv"),
         ]
-        self._surfaces = FaceSurfaces(ctx, face, inputs, indices, kind[order])
+        self._surfaces = FaceSurfaces(ctx, face, inputs, indices, known.kind)
         self._wire_array = ctx.vertex_array(self._wire, inputs, indices, skip_errors=True)
         hidden = np.zeros((-(-max(len(triangles), 1) // _EDGE_ROW), _EDGE_ROW), np.uint8)
-        hidden.ravel()[: len(triangles)] = complexion.quad_diagonals(triangles, rest)
+        hidden.ravel()[: len(triangles)] = known.diagonals
         self._hidden_edges = ctx.texture((_EDGE_ROW, len(hidden)), 1, hidden.tobytes(), dtype="u1", alignment=1)
         self._mesh = [self._surfaces, self._wire_array, self._positions, self._normal_buffer]
         self._mesh += [places, surfaces, hairs, uvs, indices, self._hidden_edges]
@@ -162,8 +161,12 @@ class FaceRenderer:
         *,
         show_markers: bool = False,
         background: tuple[float, float, float] | None = None,
-    ) -> None:
-        """Clear the framebuffer and draw one picture that fills it; alpha is 1 everywhere.
+        new_at_most: int | None = None,
+    ) -> bool:
+        """Clear the framebuffer and draw one picture that fills it; alpha is 1 everywhere. Tells whether it is whole.
+
+        new_at_most : make no more shaders than so many; each takes a software driver some 20 ms, and a face has ten.
+            While some are missing the picture has no face, and the next call goes on
 
         background : red, green, blue, 0..1, one colour instead of the studio's; None: the studio
         Without a face, wireframe and shaded show the markers as well. With the markers come the ghosts: `ghosts`, what
@@ -175,16 +178,17 @@ class FaceRenderer:
         framebuffer.use()
         ctx.viewport = (0, 0, width, height)
         ctx.enable_only(moderngl.NOTHING)
-        framebuffer.clear(*(background or (0.07, 0.075, 0.085)), 1.0, depth=1.0)
-        if background is None:
-            self._backdrop_array.render(moderngl.TRIANGLES, vertices=3)
+        self._clear(framebuffer, background)
         has_mesh = self._face is not None and style is not Style.MARKERS
-        if has_mesh:
-            self._draw_mesh(view, projection, (width, height), style)
+        if has_mesh and not self._draw_mesh(view, projection, (width, height), style, new_at_most):
+            ctx.enable_only(moderngl.NOTHING)
+            self._clear(framebuffer, background)
+            return False
         if show_markers or not has_mesh:
             self.markers.draw(view, projection, (width, height))
             self.ghosts.draw(view, projection, (width, height))
         ctx.enable_only(moderngl.NOTHING)
+        return True
 
     def release(self) -> None:
         """Free all GL objects; the renderer is of no use afterwards."""
@@ -195,7 +199,14 @@ class FaceRenderer:
         for thing in (self._backdrop_array, self._backdrop, self._wire, self._grain):
             thing.release()
 
-    def _draw_mesh(self, view: np.ndarray, projection: np.ndarray, size_px: tuple[int, int], style: Style) -> None:
+    def _clear(self, framebuffer: moderngl.Framebuffer, background: tuple[float, float, float] | None) -> None:
+        framebuffer.clear(*(background or (0.07, 0.075, 0.085)), 1.0, depth=1.0)
+        if background is None:
+            self._backdrop_array.render(moderngl.TRIANGLES, vertices=3)
+
+    def _draw_mesh(
+        self, view: np.ndarray, projection: np.ndarray, size_px: tuple[int, int], style: Style, new_at_most: int | None
+    ) -> bool:
         ctx = self._ctx
         ctx.enable_only(moderngl.DEPTH_TEST)
         view, projection = (np.ascontiguousarray(matrix.T, np.float32) for matrix in (view, projection))
@@ -205,41 +216,19 @@ class FaceRenderer:
             self._wire["viewport_px"].value = size_px
             self._hidden_edges.use(0)
             self._wire_array.render()
-            return
+            return True
         self._grain.use(0)
         if self._picture is not None:
             self._picture.use(1)
-        self._surfaces.draw(self._texture_mode(style), view, projection, size_px)
+        return self._surfaces.draw(self._texture_mode(style), view, projection, size_px, new_at_most)
 
     def _texture_mode(self, style: Style) -> int:
         if style is not Style.TEXTURED:
             return 0
         return 1 if self._picture is None or self._face.uv is None else 2
 
-    def _openness(
-        self, rest: np.ndarray, normals: np.ndarray, triangles: np.ndarray, material: np.ndarray
-    ) -> np.ndarray:
-        """Light on each vertex: of skin what its neighbours leave, inside the mouth less with depth."""
-        throws = (material == SKIN) | (material == SOCKET)
-        shadowing = triangles[throws[triangles].all(axis=1)]
-        light = openness(self._ctx, rest, normals, shadowing)
-        inside = np.isin(material, (UPPER_TEETH, LOWER_TEETH, TONGUE))
-        if inside.any():
-            # the mouth is shut at rest, so depth behind the front teeth stands for the shadow of an open one
-            front_mm = rest[inside, 2].max()
-            light[inside] = np.clip(1.0 - (front_mm - rest[inside, 2]) / 36.0, 0.04, 1.0) ** 1.5
-        light[material == SOCKET] = np.clip(light[material == SOCKET], 0.10, 0.5)
-        return light
-
     def _free_mesh(self) -> None:
         for thing in self._mesh:
             thing.release()
         self._mesh = []
         self._face = None
-
-
-def _facing_out(triangles: np.ndarray, positions: np.ndarray) -> np.ndarray:
-    """Return the triangles, all turned round if the mesh as a whole is inside out (a negative volume)."""
-    a, b, c = (positions[triangles[:, i]].astype(float) - positions.mean(axis=0) for i in range(3))
-    volume = np.einsum("ij,ij->", a, np.cross(b, c))
-    return np.ascontiguousarray(triangles[:, ::-1] if volume < 0 else triangles)

@@ -12,6 +12,7 @@ import moderngl
 import numpy as np
 
 from core.errors import UserFacingError
+from gpu.gl.libraries import library_names
 
 _SOFTWARE = ("llvmpipe", "softpipe", "swrast", "lavapipe", "swiftshader", "gdi generic", "apple software")
 
@@ -99,7 +100,7 @@ def _standalone_context() -> moderngl.Context:
         if not os.environ.get("DISPLAY") and not os.environ.get("WAYLAND_DISPLAY"):
             # without it EGL looks for a screen and fails
             os.environ.setdefault("EGL_PLATFORM", "surfaceless")
-        settings = {"backend": "egl"}
+        settings = {"backend": "egl", **library_names("libgl", "libegl")}
     else:
         settings = {}
     try:

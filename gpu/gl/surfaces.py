@@ -55,20 +55,38 @@ class FaceSurfaces:
         self._ranges = {name: (int(starts[k]), int(starts[k + 1])) for k, name in enumerate(KINDS)}
         self._arrays: dict[tuple[str, int], tuple[moderngl.Program, moderngl.VertexArray]] = {}
 
-    def draw(self, texture: int, view: np.ndarray, projection: np.ndarray, size_px: tuple[int, int]) -> None:
-        """Draw all surfaces; ``texture`` as TEXTURE in ``face.frag``, matrices float32 and column-major."""
-        ctx = self._ctx
-        for name, (start, stop) in self._ranges.items():
-            if start == stop:
-                continue
-            program, array = self._array(name, texture if name in _SKINS else 0)
-            _set(program, "view", view)
-            _set(program, "projection", projection)
-            _set(program, "viewport_px", size_px)
-            if name == "lashes":
-                ctx.enable(moderngl.BLEND)
-                ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ZERO, moderngl.ONE
-            array.render(vertices=3 * (stop - start), first=3 * start)
+    def draw(
+        self,
+        texture: int,
+        view: np.ndarray,
+        projection: np.ndarray,
+        size_px: tuple[int, int],
+        new_at_most: int | None = None,
+    ) -> bool:
+        """Draw all surfaces; ``texture`` as TEXTURE in ``face.frag``, matrices float32 and column-major.
+
+        new_at_most : make no more shaders than so many, and draw their surfaces alone, as a driver compiles a shader
+            only once it draws; tells whether the picture is whole
+        """
+        shown = {name: texture if name in _SKINS else 0 for name, (start, stop) in self._ranges.items() if start < stop}
+        missing = [name for name, number in shown.items() if (name, number) not in self._arrays]
+        is_whole = new_at_most is None or not missing
+        for name in shown if is_whole else missing[:new_at_most]:
+            self._draw_one(name, shown[name], view, projection, size_px)
+        return is_whole
+
+    def _draw_one(
+        self, name: str, texture: int, view: np.ndarray, projection: np.ndarray, size_px: tuple[int, int]
+    ) -> None:
+        start, stop = self._ranges[name]
+        program, array = self._array(name, texture)
+        _set(program, "view", view)
+        _set(program, "projection", projection)
+        _set(program, "viewport_px", size_px)
+        if name == "lashes":
+            self._ctx.enable(moderngl.BLEND)
+            self._ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ZERO, moderngl.ONE
+        array.render(vertices=3 * (stop - start), first=3 * start)
 
     def release(self) -> None:
         """Free the programs."""
