@@ -14,6 +14,7 @@ from core.progress import SILENT, Progress
 
 N_NEIGHBORS = 12
 N_ANCHORS = 400
+MOST_CARRIERS = 4000
 _DIMENSIONS = 8  # of the anchors' own scaling; the map's two lie among the first, in whatever order a subset gives them
 _SEED = 2008
 
@@ -24,13 +25,16 @@ def place_frames(
     new: np.ndarray,
     n_neighbors: int = N_NEIGHBORS,
     n_anchors: int = N_ANCHORS,
+    most_carriers: int = MOST_CARRIERS,
     progress: Progress = SILENT,
 ) -> np.ndarray:
     """Return where frames ``new`` lie on a map that was made of ``old``.
 
     Anchors are scaled anew, all frames are triangulated from them, and the affine map that carries the old frames from
     there to their ``places`` carries the new ones too. What it leaves over at the nearest old frames, weighted by
-    1 / distance, is added, so that a frame that is captured again lands where it is.
+    1 / distance, is added, so that a frame that is captured again lands where it is. On a map of more than
+    ``most_carriers`` frames as many, evenly spread, carry the new ones, with all that are nearest to one: a session
+    that is added costs what it is, and not what the map is.
 
     old : shape (n_old, n_dims), at least one; places : shape (n_old, 2); new : shape (n_new, n_dims)
     returns : float64, shape (n_new, 2)
@@ -38,16 +42,20 @@ def place_frames(
     from sklearn.neighbors import NearestNeighbors
 
     old, places, new = (np.asarray(values, float) for values in (old, places, new))
+    k = min(n_neighbors, len(old))
+    distance, near = NearestNeighbors(n_neighbors=k).fit(old).kneighbors(new)
+    if len(old) > most_carriers:
+        spread = np.linspace(0, len(old) - 1, most_carriers).astype(int)
+        carriers = np.union1d(spread, near)
+        old, places, near = old[carriers], places[carriers], np.searchsorted(carriers, near)
     n = len(old)
-    k = min(n_neighbors, n)
+    progress.step(0.2, "measuring geodesics")
     graph, _ = joined_neighbour_graph(old, min(n_neighbors, n - 1))
-    progress.step(0.3, "measuring geodesics")
     anchors = np.arange(n)
     if n > n_anchors:
         anchors = np.sort(np.random.default_rng(_SEED).choice(n, n_anchors, replace=False))
     among_old = dijkstra(graph, indices=anchors)
     progress.step(0.8, "placing new frames")
-    distance, near = NearestNeighbors(n_neighbors=k).fit(old).kneighbors(new)
     to_new = np.full((len(anchors), len(new)), np.inf)
     for j in range(k):
         np.minimum(to_new, among_old[:, near[:, j]] + distance[:, j], out=to_new)

@@ -79,3 +79,13 @@ def test_frames_that_go_leave_the_others_where_they_are():
     thinned = grow_map(old_map, kept, np.arange(len(kept)), np.zeros(len(kept), bool), frames[kept])
     assert np.array_equal(thinned.embedding, old_map.embedding[kept])
     assert thinned.triangles.max() < len(kept)
+
+
+def test_a_large_map_needs_only_a_part_of_itself(old):
+    frames, places = old
+    new = roll(1, 150)
+    whole = place_frames(frames, places, new)
+    part = place_frames(frames, places, new, most_carriers=300)
+    assert np.sqrt(((part - whole) ** 2).sum(axis=1).mean()) < 0.05 * places.std()
+    again = place_frames(frames, places, frames[::50], most_carriers=300)
+    assert again == pytest.approx(places[::50], abs=1e-4)
