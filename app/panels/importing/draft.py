@@ -75,8 +75,6 @@ class ImportDraft(QObject):
 
     def _on_surveyed(self, found: _Found) -> None:
         self.survey = found.survey
-        if found.trouble is not None:
-            self.failed.emit(*found.trouble)
         if found.plan is None:
             self._paths = ()
             self.failed.emit(texts.NO_MOTION, texts.NO_MOTION_REMEDY)
@@ -87,6 +85,8 @@ class ImportDraft(QObject):
             known = {s.name for s in self.sentences}
             added = tuple(s for s in found.plan.sentences if s.name not in known)
             self.change(texts.EDIT_FILES, sentences=(*self.sentences, *added))
+        if found.trouble is not None:
+            self.failed.emit(*found.trouble)
         self.read_facts()
 
     def set_reading(self, reading: Reading) -> None:

@@ -68,6 +68,7 @@ class ImportWindow(QWidget):
         self._arrange()
         self.steps.currentRowChanged.connect(self.on_step)
         self.draft.changed.connect(self._show_states)
+        self.draft.changed.connect(self.message.hide)  # what was wrong before the change is old
         self.draft.learnt.connect(self._show_states)
         self.draft.measured.connect(self._show_states)
         self.draft.failed.connect(self.message.say)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
+import pytest
 import soundfile
 from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
 from PySide6.QtGui import QDropEvent
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QFileDialog
 
 CTRL = Qt.KeyboardModifier.ControlModifier
 
@@ -102,3 +105,26 @@ def test_a_rate_that_the_user_states_wins_and_all_is_read_anew(assistant, grid_e
     settled(assistant)
     assert assistant.draft.plan.reading.rate_hz == 50.0
     assert {facts.rate_hz for facts in assistant.draft.facts.values()} == {50.0}
+
+
+@pytest.mark.filterwarnings("ignore:Reading `.npy`")  # written by Python 2
+def test_arrays_of_weights_say_what_they_need_and_are_markers_once_they_have_it(
+    assistant, shared_data, tmp_path, give_folder, monkeypatch, click, settled
+):
+    source, folder = shared_data("facegood"), tmp_path / "weights"
+    folder.mkdir()
+    weights = np.load(source / "bs_value" / "bs_value_1114_2_01.npy", allow_pickle=False)
+    np.save(folder / "take.npy", np.asarray(weights)[:200])
+    give_folder(assistant, folder)
+    assert "names" in assistant.message.text
+    for button, name in (
+        (assistant.files.reading.names, "shirley_1015_bs_name.npy"),
+        (assistant.files.reading.sheet, "Voice2Face_blendshape2ARkit.xlsx"),
+    ):
+        monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_, name=name: (str(source / name), ""))
+        click(button)
+        settled(assistant)
+    facts = assistant.draft.facts["take"]
+    assert facts.problem == "" and facts.n_frames == 200 and facts.rate_hz == 30.0
+    assert not assistant.message.text
+    assert assistant.draft.plan.landmarks["chin"] in facts.names and len(assistant.draft.plan.rigid) >= 3
