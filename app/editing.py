@@ -18,6 +18,7 @@ from core.document.document import Edit
 from core.document.edits import (
     LockSlots,
     PinMotionNode,
+    SetControls,
     SetEmotion,
     SetEngine,
     SetOutput,
@@ -32,6 +33,7 @@ from core.motion.curation import Removal
 from core.search.weights import SearchWeights
 from core.speech.emotion import EmotionModifier
 from core.speech.emotion_painting import painted
+from core.synthesis.control_edits import ControlEdits
 from core.synthesis.polish import Polish
 
 _gestures = itertools.count()
@@ -141,6 +143,13 @@ class Editing(Looking):
         """Lay other gains over the motion."""
         if polish != self.document.polish:
             self.push(SetPolish.on(self.document, polish, label, gesture))
+
+    # Control curves
+
+    def set_controls(self, controls: ControlEdits, label: str, gesture: int | None = None) -> None:
+        """Lay other edits over the control curves."""
+        if controls != self.document.controls:
+            self.push(SetControls.on(self.document, controls, label, gesture))
 
     # Motion nodes
 

@@ -16,7 +16,7 @@ from core.document.project_file import read_project
 from core.errors import UserFacingError
 from core.media.video import FRAME_RATES
 from core.progress import SILENT, Progress
-from core.synthesis.polish import polished
+from core.rig.control_layer import laid_over
 from core.synthesis.registry import make_engine
 
 
@@ -59,7 +59,7 @@ def run(job: ExportJob, progress: Progress = SILENT) -> dict[str, object]:
     engine = make_engine(content.engine, opened.database, opened.engine.kernels, content.weights)
     answer = engine.synthesise(document.speech_input(), progress.part(0.2, 0.5))
     path, search_s = getattr(answer, "path", None), getattr(answer, "search_s", 0.0)
-    motion = polished(answer.motion, content.polish)
+    motion = laid_over(answer.motion, opened.database, content.controls, content.polish)
 
     began = time.perf_counter()
     warnings = [sentence for sentence in (database_differences(content, opened), *opened.trouble[:1]) if sentence]

@@ -17,13 +17,15 @@ from core.document.live_search import PricedPath
 from core.media.audio import Audio
 from core.motion.database import MotionDatabase
 from core.progress import Progress
+from core.rig.control_layer import laid_over
 from core.search.best_path import MotionPath
 from core.search.engine import SearchEngine
 from core.search.weights import SearchWeights
 from core.speech.loudness import levels_db
+from core.synthesis.control_edits import ControlEdits
 from core.synthesis.engine import EngineAnswer, MotionEngine, SpeechInput
 from core.synthesis.marker_motion import MarkerMotion
-from core.synthesis.polish import Polish, polished
+from core.synthesis.polish import Polish
 from core.synthesis.pose_tracks import PoseTracks
 from core.synthesis.registry import DEFAULT_ENGINE, make_engine
 
@@ -76,9 +78,9 @@ class Solving(QObject):
 
     def _on_document_changed(self, change: Change, _origin: object) -> None:
         speech = self._document.speech
-        if change & Change.POLISH and self._document.answer is not None:
-            request = (self._document.answer.motion, self._document.polish)
-            self._jobs.start("polish", "", request, _polish, self._document.show_motion)
+        if change & (Change.CONTROLS | Change.POLISH) and self._document.answer is not None:
+            request = self._document.answer.motion, _Layers.of(self._document)
+            self._jobs.start("polish", "", request, _lay_over, self._document.show_motion)
         if change & ASKED_OF_THE_SEARCH:
             self._jobs.cancel("prices")
             self._jobs.cancel("search")
@@ -92,7 +94,7 @@ class Solving(QObject):
             return
         self._jobs.cancel("prices")
         weights, audio = document.search_weights, document.speech.audio
-        request = _SolveRequest(self._engine(), speech, weights, audio, document.polish)
+        request = _SolveRequest(self._engine(), speech, weights, audio, _Layers.of(document))
         self._jobs.start("search", texts.SYNTHESISING, request, _solve, self._on_solved)
 
     def _on_solved(self, solved: tuple[EngineAnswer, MarkerMotion, PoseTracks]) -> None:
@@ -118,12 +120,28 @@ def changed_slots(before: MotionPath, after: MotionPath) -> tuple[int, ...]:
 
 
 @dataclass(frozen=True)
+class _Layers:
+    """What is laid over the motion of any engine."""
+
+    database: MotionDatabase
+    controls: ControlEdits
+    polish: Polish
+
+    @classmethod
+    def of(cls, document: Document) -> _Layers:
+        return cls(document.database, document.controls, document.polish)
+
+    def over(self, motion: MarkerMotion) -> MarkerMotion:
+        return laid_over(motion, self.database, self.controls, self.polish)
+
+
+@dataclass(frozen=True)
 class _SolveRequest:
     engine: LiveEngine
     speech: SpeechInput
     weights: SearchWeights | None
     audio: Audio
-    polish: Polish
+    layers: _Layers
 
 
 def _solve(request: _SolveRequest, progress: Progress) -> tuple[EngineAnswer, MarkerMotion, PoseTracks]:
@@ -131,11 +149,12 @@ def _solve(request: _SolveRequest, progress: Progress) -> tuple[EngineAnswer, Ma
     motion = answer.motion
     loudness_db = _levels_db(request.audio)
     tracks = PoseTracks.of(request.speech.transcript, motion.rate_hz, len(motion.positions), loudness_db)
-    return answer, polished(motion, request.polish), tracks
+    return answer, request.layers.over(motion), tracks
 
 
-def _polish(request: tuple[MarkerMotion, Polish], _progress: Progress) -> MarkerMotion:
-    return polished(*request)
+def _lay_over(request: tuple[MarkerMotion, _Layers], _progress: Progress) -> MarkerMotion:
+    motion, layers = request
+    return layers.over(motion)
 
 
 @lru_cache(maxsize=2)

@@ -13,9 +13,9 @@ class Change(Flag):
     CONSTRAINTS : pins and locks
     ENGINE : which engine makes the motion; WEIGHTS : of the search
     OUTPUT : frame rate, first frame, head motion
-    POLISH : the layer over the motion
+    CONTROLS : the artist's layer over the control curves; POLISH : the layer over the motion
     PATH : what the search found; PRICES : what alternatives to it would cost
-    MOTION : the motion on show, polish included; it comes with PATH
+    MOTION : the motion on show, both layers included; it comes with PATH
     """
 
     SPEECH = auto()
@@ -30,6 +30,7 @@ class Change(Flag):
     FACE = auto()
     REFERENCE_VIDEO = auto()
     OUTPUT = auto()
+    CONTROLS = auto()
     POLISH = auto()
     PATH = auto()
     MOTION = auto()

@@ -32,6 +32,7 @@ from core.motion.database import MotionDatabase
 from core.search.weights import SearchWeights
 from core.speech.emotion import EmotionModifier
 from core.speech.transcript import Transcript
+from core.synthesis.control_edits import NO_CONTROL_EDITS, ControlEdits
 from core.synthesis.polish import NO_POLISH, Polish
 from core.synthesis.registry import DEFAULT_ENGINE
 
@@ -57,6 +58,7 @@ class ProjectContent:
     face: FaceChoice | None = DEFAULT_FACE
     reference_video: ReferenceVideo | None = None
     output: OutputSettings = DEFAULT_OUTPUT
+    controls: ControlEdits = NO_CONTROL_EDITS
     polish: Polish = NO_POLISH
     database: DatabaseReference | None = None
     tied: Mapping[str, NodeContent] = field(default_factory=lambda: EMPTY)
@@ -82,6 +84,7 @@ class ProjectContent:
             removed_here=document.removed_here, kept=document.kept, engine=document.engine,
             weights=document.weights, face=document.face,
             reference_video=document.reference_video, output=document.output, polish=document.polish,
+            controls=document.controls,
             database=document.database_reference, tied=_tied(document, tied),
             view=View() if view is None else View(view.slot, view.playhead_s, view.map_phone), others=others,
         )  # fmt: skip
@@ -95,7 +98,7 @@ class ProjectContent:
             database=database, database_reference=self.database, speech=speech, modifiers=self.modifiers,
             pins=self.pins, locks=self.locks, removed_here=self.removed_here, kept=self.kept, engine=self.engine,
             weights=self.weights, face=self.face, reference_video=self.reference_video,
-            output=self.output, polish=self.polish,
+            output=self.output, polish=self.polish, controls=self.controls,
         )  # fmt: skip
 
     def to_json(self) -> str:
@@ -123,6 +126,9 @@ class ProjectContent:
             "output": asdict(self.output),
             "polish": {"articulation": self.polish.articulation, "expression": self.polish.expression,
                        "curves": {region: list(keys) for region, keys in sorted(self.polish.curves.items())}},
+            "controls": {name: {"keys": [[key.time_s, key.amount, key.reach_s] for key in edits.keys],
+                                "smoothed": list(edits.smoothed), "is_muted": edits.is_muted}
+                         for name, edits in sorted(self.controls.by_control.items())},
             "database": None if self.database is None else asdict(self.database),
             "tied": {name: asdict(node) for name, node in sorted(self.tied.items())},
             "view": asdict(self.view),
@@ -167,6 +173,7 @@ class ProjectContent:
             reference_video=door.optional(entries.pop("reference_video", None), lambda e: ReferenceVideo(
                 door.name_text(e["path"]), door.number(e["offset_s"], -door.FARTHEST_S, door.FARTHEST_S))),
             output=door.output_settings(entries.pop("output", {})),
+            controls=door.control_edits(entries.pop("controls", {})),
             polish=door.polish(entries.pop("polish", {})),
             database=door.optional(entries.pop("database", None), lambda e: DatabaseReference(
                 *(door.name_text(e[key]) for key in ("name", "content_hash")),

@@ -15,10 +15,19 @@ from core.motion.curation import Removal
 from core.speech.emotion import EMOTION_INDEX, EmotionModifier
 from core.speech.phoneme import PHONEME_INDEX
 from core.speech.transcript import PhonemeUtterance, Transcript, WordUtterance
+from core.synthesis.control_edits import (
+    FARTHEST,
+    LONGEST_REACH_S,
+    SHORTEST_REACH_S,
+    ControlEdits,
+    ControlKey,
+    CurveEdits,
+)
 from core.synthesis.polish import REGIONS, STRONGEST, Polish
 
 _LONGEST_NAME, _LONGEST_TEXT = 1 << 15, 1 << 22
 _MOST_UTTERANCES, MOST_SPANS, MOST_NODES = 100_000, 100_000, 1_000_000
+_MOST_CONTROLS = 10_000
 _HIGHEST_FRAME = 10**9
 _FARTHEST_MM = 1e9
 FARTHEST_S = 1e9
@@ -159,6 +168,24 @@ def polish(entry: dict) -> Polish:
         curves[region] = tuple(sorted(read))
     gains = (number(entry.get(name, 1.0), 0.0, STRONGEST) for name in ("articulation", "expression"))
     return Polish(*gains, MappingProxyType(curves))
+
+
+def control_edits(entries: dict) -> ControlEdits:
+    """Return the layer over the control curves."""
+    require(len(of_type(entries, dict)) <= _MOST_CONTROLS, "too many controls are edited")
+    by_control = {}
+    for name, entry in entries.items():
+        keys = (
+            ControlKey(number(at_s, 0.0, FARTHEST_S), number(amount, -FARTHEST, FARTHEST),
+                       number(reach_s, SHORTEST_REACH_S, LONGEST_REACH_S))
+            for at_s, amount, reach_s in listed(entry["keys"], MOST_SPANS)
+        )  # fmt: skip
+        stretches = tuple(
+            (number(start_s, 0.0, FARTHEST_S), number(end_s, 0.0, FARTHEST_S))
+            for start_s, end_s in listed(entry["smoothed"], MOST_SPANS)
+        )
+        by_control[name_text(name)] = CurveEdits(tuple(sorted(keys)), stretches, of_type(entry["is_muted"], bool))
+    return ControlEdits(MappingProxyType(by_control))
 
 
 def view_entry(entry: dict, n_slots: int) -> View:

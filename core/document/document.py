@@ -25,6 +25,7 @@ from core.motion.database import MotionDatabase
 from core.search.best_path import MotionPath
 from core.search.weights import SearchWeights
 from core.speech.emotion import EmotionModifier
+from core.synthesis.control_edits import NO_CONTROL_EDITS, ControlEdits
 from core.synthesis.engine import EngineAnswer, SpeechInput
 from core.synthesis.marker_motion import MarkerMotion
 from core.synthesis.polish import NO_POLISH, Polish
@@ -65,6 +66,7 @@ class ProjectState:
     face: FaceChoice | None = DEFAULT_FACE
     reference_video: ReferenceVideo | None = None
     output: OutputSettings = DEFAULT_OUTPUT
+    controls: ControlEdits = NO_CONTROL_EDITS
     polish: Polish = NO_POLISH
 
 
@@ -84,9 +86,9 @@ class Document:
         a newer workstation, is kept
     weights : of the search; None for the database's own
     face : None for markers alone
-    polish : the layer over the motion
+    controls : the artist's layer over the control curves; polish : the layer over the motion that they make
     answer : what the engine made, or None; until a new one answers it may be the one from before an edit
-    motion : the motion on show: that of ``answer`` under the polish, or None
+    motion : the motion on show: that of ``answer`` under both layers, or None
     prices : float64, shape (n_slots, n_nodes), what forcing a node into a slot would add to the cost of ``answer``, in
         the unit of COST; None until they are known
     breakdown : cost of each slot of ``answer`` by term (`core.search.session.SearchSession.breakdown`), or None
@@ -109,6 +111,7 @@ class Document:
         self.face = face
         self.reference_video: ReferenceVideo | None = None
         self.output = DEFAULT_OUTPUT
+        self.controls = NO_CONTROL_EDITS
         self.polish = NO_POLISH
         self.answer: EngineAnswer | None = None
         self.motion: MarkerMotion | None = None
@@ -127,7 +130,7 @@ class Document:
         self._tell(edit.undo(self), origin)
 
     def show_answer(self, answer: EngineAnswer, motion: MarkerMotion) -> None:
-        """Take what an engine made for the document as it is now, and its motion under the polish.
+        """Take what an engine made for the document as it is now, and its motion under both layers.
 
         Its prices are still to come.
         """
@@ -136,7 +139,7 @@ class Document:
             self._tell(Change.PATH | Change.MOTION | Change.PRICES, None)
 
     def show_motion(self, motion: MarkerMotion) -> None:
-        """Take the motion of the same answer under another polish."""
+        """Take the motion of the same answer under other layers."""
         self.motion = motion
         self._tell(Change.MOTION, None)
 

@@ -15,6 +15,7 @@ from core.motion.curation import Removal
 from core.motion.database import MotionDatabase
 from core.search.weights import SearchWeights
 from core.speech.emotion import EmotionModifier
+from core.synthesis.control_edits import ControlEdits
 from core.synthesis.polish import Polish
 from core.synthesis.registry import engine_kind
 
@@ -229,6 +230,15 @@ class SetPolish(FieldEdit):
         return cls.setting(document, label, Change.POLISH, gesture=gesture, polish=polish)
 
 
+class SetControls(FieldEdit):
+    """Lay other keys, smoothings and mutings over the control curves; those of one drag become one edit."""
+
+    @classmethod
+    def on(cls, document: Document, controls: ControlEdits, label: str, gesture: int | None = None) -> SetControls:
+        """Return the edit for ``document`` as it is now."""
+        return cls.setting(document, label, Change.CONTROLS, gesture=gesture, controls=controls)
+
+
 class RestoreVersion(FieldEdit):
     """Make the project what it was in a named version; nothing is lost, for it undoes."""
 
@@ -238,6 +248,7 @@ class RestoreVersion(FieldEdit):
         "locks": Change.CONSTRAINTS, "removed_here": Change.CURATION, "kept": Change.CURATION,
         "engine": Change.ENGINE, "weights": Change.WEIGHTS, "face": Change.FACE,
         "reference_video": Change.REFERENCE_VIDEO, "output": Change.OUTPUT, "polish": Change.POLISH,
+        "controls": Change.CONTROLS,
     })  # fmt: skip
 
     @classmethod

@@ -20,6 +20,7 @@ from core.document.document import Document, Edit
 from core.document.edits import (
     FieldEdit,
     PinMotionNode,
+    SetControls,
     SetEmotion,
     SetEngine,
     SetFace,
@@ -40,6 +41,7 @@ from core.speech.emotion import EMOTIONS
 from core.speech.emotion_painting import erased, painted
 from core.speech.phoneme import PHONEMES
 from core.speech.transcript import PhonemeUtterance, Transcript, WordUtterance
+from core.synthesis.control_edits import ControlKey
 from core.synthesis.polish import REGIONS
 from core.synthesis.registry import ENGINES
 
@@ -89,6 +91,14 @@ def random_edit(document: Document, chance: random.Random) -> Edit | None:
             ),
             "Polish",
             chance.choice((None, 4)),
+        ),
+        lambda: SetControls.on(
+            document,
+            document.controls.with_keys("jawOpen", (ControlKey(chance.uniform(0, 1), chance.uniform(-1, 1), 0.1),))
+            .smoothing("mouthPucker", *times_s)
+            .muting("mouthClose", chance.random() < 0.5),
+            "Curves",
+            chance.choice((None, 5)),
         ),
         lambda: FieldEdit.setting(
             document, "Weigh", Change.WEIGHTS, weights=chance.choice((None, SearchWeights(pnt=chance.uniform(1, 5e4))))
