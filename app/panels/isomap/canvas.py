@@ -117,6 +117,12 @@ class MapCanvas(pg.GraphicsView):
         super().leaveEvent(event)
         self._box.pointed.emit(None)
 
+    def resizeEvent(self, event) -> None:
+        """Keep the ring around it."""
+        super().resizeEvent(event)
+        if hasattr(self, "focus_ring"):  # the view is laid out while it is being made
+            self.focus_ring.fit()
+
     def event(self, event) -> bool:
         """Keep our keys from the menus while the map has the focus: here Space plays the picked node."""
         if event.type() == QEvent.Type.ShortcutOverride and _is_ours(event):

@@ -225,6 +225,7 @@ class Timeline(QWidget):
     def resizeEvent(self, event) -> None:
         """Paint the lanes anew."""
         super().resizeEvent(event)
+        self.focus_ring.fit()
         self._editor.hide()
         self.renew()
 
