@@ -64,14 +64,18 @@ class AnimemeModel:
     def values(self, utterances: Utterances, times_s: Sequence[np.ndarray], holds: bool = False) -> np.ndarray:
         """Evaluate equation 1 at any times of any sentences; float64, shape (n_frames, U)."""
         scene = self.scene(utterances, times_s, holds)
-        shared = sharing(levels_of(self.form, {}), self.form.degree, utterances, self.span_s)
-        stacked = np.concatenate([table.reshape(-1, len(self.names)) for table in self.coefficients.values()])
-        polynomials = shared @ stacked
+        polynomials = self.polynomials(utterances)
         values = np.empty((scene.n_frames, len(self.names)))
         for g, widths in enumerate(self.widths):
             mine = self.group == g
             values[:, mine] = scene.matrix(scene.weights(widths)) @ polynomials[:, mine]
         return values + self.rest
+
+    def polynomials(self, utterances: Utterances) -> np.ndarray:
+        """Return the coefficients of equation 2 of each occurrence, shape (J (degree + 1), U); see `Scene.powers`."""
+        shared = sharing(levels_of(self.form, {}), self.form.degree, utterances, self.span_s)
+        stacked = np.concatenate([table.reshape(-1, len(self.names)) for table in self.coefficients.values()])
+        return shared @ stacked
 
     def scene(self, utterances: Utterances, times_s: Sequence[np.ndarray], holds: bool = False) -> Scene:
         """Lay sentences over their frames as this model does."""

@@ -25,10 +25,11 @@ _VERSION = 1  # raise it when training changes, so that cached models are not ta
 
 @dataclass(frozen=True)
 class AnimemeAnswer:
-    """Motion, and the curves of the components that made it."""
+    """Motion, the curves of the components that made it, and the animemes that these are of, if they are."""
 
     motion: MarkerMotion
     curves: ControlTrack
+    model: AnimemeModel | None = None
     warnings: tuple[str, ...] = ()
 
 
@@ -73,7 +74,7 @@ class AnimemeEngine:
         database = self.database
         curves = self._model.curves(speech.transcript, database.rate_hz, speech.modifiers, holds=self.holds)
         positions = database.pca.positions(curves.values).astype(np.float32)
-        return AnimemeAnswer(MarkerMotion(positions, database.rate_hz, database.markers), curves)
+        return AnimemeAnswer(MarkerMotion(positions, database.rate_hz, database.markers), curves, self._model)
 
 
 def component_animemes(database: MotionDatabase, form: AnimemeForm = BEST, progress: Progress = SILENT) -> AnimemeModel:

@@ -11,6 +11,7 @@ from core.speech.emotion import emotion_weights
 from core.speech.phoneme import PAU, PHONEME_INDEX
 from core.speech.transcript import Transcript
 
+_SHORTEST_S = 1e-3  # a phoneme has a time of its own to be placed in, however short a label says it is
 _PAU = PHONEME_INDEX[PAU]
 
 
@@ -45,7 +46,8 @@ class Utterances:
             starts_s, ends_s = (np.array([getattr(u, end) for u in said]) for end in ("start_s", "end_s"))
             around = np.concatenate([[_PAU], phoneme, [_PAU]])
             felt = emotion_weights(starts_s, ends_s, modifiers[s] if modifiers else ())
-            parts.append((phoneme, around[:-2], around[2:], starts_s, ends_s - starts_s, felt))
+            durations_s = np.maximum(ends_s - starts_s, _SHORTEST_S)
+            parts.append((phoneme, around[:-2], around[2:], starts_s, durations_s, felt))
         first = np.cumsum([0, *(len(part[0]) for part in parts)])
         return cls(*(np.concatenate(column) for column in zip(*parts)), first)
 
