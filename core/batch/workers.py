@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import warnings
 from collections.abc import Callable, Iterable, Iterator
 
 from core.errors import UserFacingError
@@ -32,8 +33,12 @@ def cores(n_jobs: int = -1) -> Workers:
             return
         jobs = [delayed(function)(*arguments) for function, arguments in calls]
         answers = Parallel(n_jobs=n_jobs, return_as="generator_unordered", batch_size=1, pre_dispatch="all")(jobs)
-        with contextlib.closing(answers):
+        try:
             yield from answers
+        finally:
+            with warnings.catch_warnings():  # joblib tells that work was left, which is what a cancel asks for
+                warnings.simplefilter("ignore", UserWarning)
+                answers.close()
 
     return work
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 import soundfile
 
-from core.batch.workers import cores
+from core.batch.workers import cores, workers_at
 from core.errors import UserFacingError
 from core.importing.plan import ImportPlan, SentencePlan, write_plan
 from core.importing.report import KEY, ImportReport
@@ -204,3 +204,14 @@ def test_the_import_of_tracked_video_equals_its_build(shared_data, tmp_path):
     plan = survey([folder]).plan("grid")
     made = run_import(plan, tmp_path / "imported.h5", folder=tmp_path / "work")
     assert made.database.content_hash == build_database(read_corpus(folder), tmp_path / "built.h5").content_hash
+
+
+@pytest.mark.prove
+@pytest.mark.filterwarnings("ignore")
+def test_a_cluster_makes_the_same(plan, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    alone = run_import(plan, tmp_path / "alone.h5", folder=tmp_path / "a")
+    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None)
+    with cluster, workers_at(cluster.scheduler_address, 1, "Importing") as workers:
+        there = run_import(plan, tmp_path / "there.h5", workers=workers, folder=tmp_path / "b")
+    assert there.database.content_hash == alone.database.content_hash
