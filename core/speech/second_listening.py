@@ -17,7 +17,7 @@ from core.speech.transcript import Transcript
 # Below the level of the speech. Louder noise moves sure boundaries too; quieter noise moves nothing.
 _NOISE_DB = 20.0
 _SEEDS = (1, 2)
-# A boundary that moves by this much is as likely to be wrong as right, see `AlignmentConfidence`.
+# A phoneme that moves by this much is half sure; what that is worth is told by `AlignmentConfidence`.
 HALF_SURE_S = 0.05
 
 
@@ -28,8 +28,10 @@ class AlignmentConfidence:
     shift_s : float64, shape (n_phonemes,), the larger move of a phoneme's two boundaries, seconds; NaN in silence
 
     The decoder's own score says how well a sound fits its phone, not where the phone begins, and is of no use here:
-    over 150 GRID sentences it ranks words that are placed more than 50 ms off no better than chance (area under the
-    curve 0.53), while the shift ranks them at 0.71. It is agreement, not a probability: an alignment that is wrong in
+    over 150 GRID sentences it ranks words that begin more than 50 ms off little better than chance (area under the
+    curve 0.53), while the move of the boundary in one noisy copy ranks them at 0.71. The figure of a phoneme, which
+    counts both its boundaries, ranks them at 0.61 (120 other sentences): of words that move less than 25 ms one in ten
+    is wrong, of those that move more one in four. It is agreement, not a probability: an alignment that is wrong in
     the same way each time looks sure.
     """
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, Qt, Signal
-from PySide6.QtWidgets import QAbstractItemView, QComboBox, QHeaderView, QStyledItemDelegate, QTableView
+from PySide6.QtGui import QIcon
+from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableView
 
+from app.panels.importing.choice_delegate import ChoiceDelegate
 from app.panels.importing.sentence_table import dress
 from app.texts import importing as texts
 from app.theme import colour, theme
@@ -102,25 +104,6 @@ class MatchModel(QAbstractTableModel):
         return role == Qt.ItemDataRole.EditRole
 
 
-class _WantedDelegate(QStyledItemDelegate):
-    def createEditor(self, parent, _option, index):
-        """Offer all wanted names."""
-        model = index.model()
-        editor = QComboBox(parent)
-        editor.addItems([model.none, *model.wanted])
-        editor.activated.connect(lambda _: (self.commitData.emit(editor), self.closeEditor.emit(editor)))
-        return editor
-
-    def setEditorData(self, editor, index) -> None:
-        """Begin with what it is."""
-        editor.setCurrentText(index.data(Qt.ItemDataRole.EditRole))
-        editor.showPopup()
-
-    def setModelData(self, editor, model, index) -> None:
-        """Take what was chosen."""
-        model.setData(index, editor.currentText())
-
-
 class MatchTable(QTableView):
     """chosen(found) : the current row is another."""
 
@@ -133,7 +116,7 @@ class MatchTable(QTableView):
         dress(self)
         self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
         self.setEditTriggers(QAbstractItemView.EditTrigger.DoubleClicked | QAbstractItemView.EditTrigger.EditKeyPressed)
-        self._delegate = _WantedDelegate(self)
+        self._delegate = ChoiceDelegate(lambda _: [(QIcon(), n) for n in (self.pairs.none, *self.pairs.wanted)], self)
         self.setItemDelegateForColumn(_WANTED, self._delegate)
         header = self.horizontalHeader()
         header.setStretchLastSection(False)

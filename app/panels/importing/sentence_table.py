@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QSortFilterProxyModel, Qt, Signal
-from PySide6.QtWidgets import QAbstractItemView, QComboBox, QHeaderView, QStyledItemDelegate, QTableView
+from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableView
 
 from app.icons import dot
+from app.panels.importing.choice_delegate import ChoiceDelegate
 from app.panels.importing.draft import ImportDraft
 from app.texts import importing as texts
 from app.theme import STEP, colour, theme
@@ -142,27 +143,6 @@ def _words(sentence: SentencePlan) -> str:
     return texts.WORDS_RECOGNISED if sentence.audio else texts.WORDS_NONE
 
 
-class EmotionDelegate(QStyledItemDelegate):
-    """Chooses one of the emotions."""
-
-    def createEditor(self, parent, _option, _index):
-        """See Qt."""
-        editor = QComboBox(parent)
-        for emotion in EMOTIONS:
-            editor.addItem(dot(theme().emotion[emotion]), emotion)
-        editor.activated.connect(lambda _: (self.commitData.emit(editor), self.closeEditor.emit(editor)))
-        return editor
-
-    def setEditorData(self, editor, index) -> None:
-        """See Qt."""
-        editor.setCurrentText(index.data(Qt.ItemDataRole.EditRole))
-        editor.showPopup()
-
-    def setModelData(self, editor, model, index) -> None:
-        """See Qt."""
-        model.setData(index, editor.currentText())
-
-
 class SentenceTable(QTableView):
     """Many rows can be selected; keys 1 to 4 set their emotion, Delete leaves them out.
 
@@ -188,7 +168,7 @@ class SentenceTable(QTableView):
         for column, width in enumerate(_WIDTHS_PX):
             if width:
                 self.setColumnWidth(column, width)
-        self._emotions = EmotionDelegate(self)
+        self._emotions = ChoiceDelegate(lambda _: [(dot(theme().emotion[e]), e) for e in EMOTIONS], self)
         self.setItemDelegateForColumn(_EMOTION, self._emotions)
 
     @property

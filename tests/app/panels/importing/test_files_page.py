@@ -8,7 +8,7 @@ import soundfile
 from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
 from PySide6.QtGui import QDropEvent
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QFileDialog
+from PySide6.QtWidgets import QComboBox, QFileDialog
 
 CTRL = Qt.KeyboardModifier.ControlModifier
 
@@ -128,3 +128,16 @@ def test_arrays_of_weights_say_what_they_need_and_are_markers_once_they_have_it(
     assert facts.problem == "" and facts.n_frames == 200 and facts.rate_hz == 30.0
     assert not assistant.message.text
     assert assistant.draft.plan.landmarks["chin"] in facts.names and len(assistant.draft.plan.rigid) >= 3
+
+
+def test_an_emotion_is_chosen_in_its_cell(assistant, grid_examples, give_folder, qtbot):
+    give_folder(assistant, grid_examples)
+    table = assistant.files.table
+    table.setCurrentIndex(table.sorted.index(1, 4))
+    table.setFocus()
+    QTest.keyClick(table, Qt.Key.Key_F2)
+    editor = table.viewport().findChild(QComboBox)
+    QTest.keyClick(editor.view(), Qt.Key.Key_Down)
+    QTest.keyClick(editor.view(), Qt.Key.Key_Return)
+    name = _name(table, 1)
+    qtbot.waitUntil(lambda: next(s.emotion for s in assistant.draft.sentences if s.name == name) == "happiness")
