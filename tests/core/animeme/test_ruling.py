@@ -23,8 +23,8 @@ def constant():
     """One constant target a phoneme: equation 1 is then the mean of the targets, weighed by the shares."""
     form = AnimemeForm(degree=0, context_degree=-1, duration_degree=-1, emotion_degree=-1)
     tables = {level.name: np.zeros((level.n_rows, level.degree + 1, 2)) for level in levels_of(form, {})}
-    (table,) = tables.values()
-    table[:N_PHONEMES, 0] = np.random.default_rng(5).normal(size=(N_PHONEMES, 2))
+    table = tables["phoneme"]
+    table[:, 0] = np.random.default_rng(5).normal(size=(N_PHONEMES, 2))
     widths, span_s = np.full((1, 2, N_PHONEMES), 0.6), np.tile([[0.01], [2.0]], N_PHONEMES)
     return AnimemeModel(form, ("a", "b"), np.array([0.1, 0.2]), widths, np.zeros(2, int), tables, span_s), table
 
