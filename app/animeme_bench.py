@@ -33,7 +33,7 @@ from core.progress import SILENT, Progress
 PAPER_ERRORS = {"animeme": 0.406, "MMM": 0.860, "Cohen-Massaro": 1.427}
 PAPER_SPEECH_S = 300.0
 _COLOURS = {"animeme": "#0f6c7a", "MMM": "#b0562c", "Cohen-Massaro": "#7a3b8f"}
-_SYNTHESIS_HZ = 60.0
+_SYNTHESIS_HZ, _TRIES = 60.0, 5
 
 
 def bench_animemes(
@@ -134,9 +134,12 @@ def _speed(train: Sequence[Example], model: AnimemeModel, transcripts: Sequence)
     model.curves(transcripts[0], _SYNTHESIS_HZ)
     times_s = []
     for transcript in transcripts:
-        began = time.perf_counter()
-        model.curves(transcript, _SYNTHESIS_HZ)
-        times_s.append(time.perf_counter() - began)
+        tries_s = []
+        for _ in range(_TRIES):
+            began = time.perf_counter()
+            model.curves(transcript, _SYNTHESIS_HZ)
+            tries_s.append(time.perf_counter() - began)
+        times_s.append(min(tries_s))
     said_s = np.array([transcript.duration_s for transcript in transcripts])
     return {
         "speech_s": round(seconds, 1), "controls": len(train[0].track.names), "seconds_to_train": round(took_s, 2),
