@@ -8,10 +8,12 @@ from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from app import texts
 from app.emotion_colours import emotion_colours
-from app.panels.pane import Choice, label
+from app.panels.pane import Choice, label, toggle
+from app.panels.timeline.control_page import ControlPage
 from app.panels.timeline.ruler import UNITS
 from app.panels.timeline.snapping import FREE, PHONEMES, WORDS
 from app.panels.timeline.timeline import Timeline
+from app.texts import curves as curve_texts
 from app.theme import STEP, theme
 from core.speech.emotion import EMOTIONS
 
@@ -31,6 +33,9 @@ class TimelinePane(QWidget):
         self.bar = TimelineBar(timeline)
         column.addWidget(self.bar)
         column.addWidget(timeline, 1)
+        self.curves = ControlPage(timeline)
+        column.addWidget(self.curves)
+        self.bar.curves.toggled.connect(self.curves.open)
 
 
 class TimelineBar(QWidget):
@@ -68,6 +73,8 @@ class TimelineBar(QWidget):
         self.spectrogram = self._button(texts.SPECTROGRAM, texts.SPECTROGRAM_TIP, timeline.heard.want_spectrogram)
         self.spectrogram.setCheckable(True)
         row.addWidget(self.spectrogram)
+        self.curves = toggle(curve_texts.TOGGLE, curve_texts.TOGGLE_TIP, lambda _: None)
+        row.addWidget(self.curves)
         self.units = Choice([(unit, texts.UNITS[unit], texts.UNITS_TIP) for unit in UNITS])
         self.units.choose(timeline.ruler.unit)
         self.units.group.idClicked.connect(lambda _: timeline.set_unit(self.units.key))

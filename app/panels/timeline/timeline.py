@@ -43,9 +43,11 @@ class Timeline(QWidget):
     emotion lane is painted with the brush.
 
     brush_changed(emotion) : for whoever shows the brush
+    renewed : for whoever paints on the same time axis
     """
 
     brush_changed = Signal(str)
+    renewed = Signal()
 
     def __init__(self, authoring: Authoring) -> None:
         super().__init__()
@@ -117,6 +119,7 @@ class Timeline(QWidget):
         """Paint the lanes anew."""
         self._lanes_picture = None
         self.update()
+        self.renewed.emit()
 
     def on_playhead_moved(self, time_s: float) -> None:
         """Move the playhead; while it plays beyond the edge, turn the page."""

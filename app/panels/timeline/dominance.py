@@ -1,0 +1,80 @@
+"""The dominance functions under the curves: which phoneme's shape wins, moment by moment."""
+
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
+
+from app.panels.timeline.lanes import TimeScale
+from app.panels.timeline.shown_curves import FoundCurves
+from app.theme import THEMES, small_font, theme
+from core.speech.phoneme import PAU, PHONEME_INDEX
+
+_STEP_PX = 2
+_LEAST_SHARE = 0.02
+_GOLDEN = 0.618034  # neighbours in the list of phonemes get hues far apart
+
+
+def phoneme_colour(phone: str, alpha: float = 1.0) -> QColor:
+    """Return the colour that a phoneme has everywhere in the curves; silence is grey."""
+    is_dark = theme().canvas == THEMES["dark"].canvas
+    lightness = 0.64 if is_dark else 0.42
+    saturation = 0.0 if phone == PAU else 0.55
+    return QColor.fromHslF((PHONEME_INDEX[phone] * _GOLDEN) % 1.0, saturation, lightness, alpha)
+
+
+def paint_dominances(
+    painter: QPainter, area: QRectF, scale: TimeScale, curves: FoundCurves, hovered: int | None
+) -> None:
+    """Each phoneme's share as a hill in its colour; the one under the pointer stands out."""
+    shares, said = curves.ruling.shares, curves.transcript.phonemes
+    rate_hz = curves.found.rate_hz
+    left, right = max(area.left(), scale.x(0.0)), min(area.right(), scale.x((shares.shape[1] - 1) / rate_hz))
+    if right <= left:
+        return
+    xs = np.arange(left, right, _STEP_PX)
+    frames = (scale.start_s + (xs - scale.left_px) / scale.px_per_s) * rate_hz
+    painter.setFont(small_font())
+    metrics = painter.fontMetrics()
+    room = area.height() - 4
+    for j, utterance in enumerate(said):
+        heights = np.interp(frames, np.arange(shares.shape[1]), shares[j])
+        seen = np.flatnonzero(heights > _LEAST_SHARE)
+        if len(seen) == 0:
+            continue
+        rows = np.arange(max(seen[0] - 1, 0), min(seen[-1] + 2, len(xs)))
+        line = [QPointF(xs[i], area.bottom() - heights[i] * room) for i in rows]
+        hill = QPolygonF([QPointF(line[0].x(), area.bottom()), *line, QPointF(line[-1].x(), area.bottom())])
+        faded = hovered is not None and hovered != j
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(phoneme_colour(utterance.phone, 0.08 if faded else 0.55 if hovered == j else 0.26))
+        painter.drawPolygon(hill)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(QPen(phoneme_colour(utterance.phone, 0.35 if faded else 1.0), 2.0 if hovered == j else 1.2))
+        painter.drawPolyline(QPolygonF(line))
+        width = scale.x(utterance.end_s) - scale.x(utterance.start_s)
+        if utterance.phone != PAU and metrics.horizontalAdvance(utterance.phone) + 2 < width and not faded:
+            box = QRectF(scale.x(utterance.start_s), area.bottom() - metrics.height() - 1, width, metrics.height())
+            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, utterance.phone)
+
+
+def paint_asked(painter: QPainter, scale: TimeScale, curves: FoundCurves, control: str, y_of) -> None:
+    """A dash at the middle of each phoneme: where it alone would hold the control.
+
+    y_of : value to height
+    """
+    values = curves.ruling.asked[:, curves.found.names.index(control)]
+    for utterance, value in zip(curves.transcript.phonemes, values):
+        middle = scale.x((utterance.start_s + utterance.end_s) / 2)
+        half = min(max((utterance.end_s - utterance.start_s) * scale.px_per_s * 0.3, 3.0), 14.0)
+        painter.setPen(QPen(phoneme_colour(utterance.phone, 0.9), 2.5))
+        painter.drawLine(QLineF(middle - half, y_of(value), middle + half, y_of(value)))
+
+
+def ruler_at(curves: FoundCurves, time_s: float) -> int | None:
+    """Return the phoneme that rules a moment, or None beyond the curves."""
+    frame = round(time_s * curves.found.rate_hz)
+    if curves.ruling is None or not 0 <= frame < curves.ruling.shares.shape[1]:
+        return None
+    return int(curves.ruling.shares[:, frame].argmax())
