@@ -204,6 +204,16 @@ class ProjectKeeper(QObject):
         """Return when all that is on show is on disk; raises `UserFacingError` when it cannot be."""
         self._waited(self.file.save(*self._shown()))
 
+    def last_save_refused(self) -> str:
+        """Have all that is on show written; return a sentence about why it cannot be, or nothing once it is on disk."""
+        if self.file is None:
+            return ""
+        try:
+            self.save_now()
+        except Exception as error:  # whatever it is, the user is to decide before the window is gone
+            return " ".join(_told(error)).strip()
+        return ""
+
     def _waited(self, answer: Future[Answer]) -> Answer:
         if not wait_for([answer], _SILENT_S).done:
             started, ended = self.authoring.jobs.started, self.authoring.jobs.ended

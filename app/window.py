@@ -193,6 +193,15 @@ class MainWindow(AskingWindow):
         answer = QMessageBox.question(self, texts.APPLICATION, texts.EXPORT_IS_RUNNING)
         return answer == QMessageBox.StandardButton.Yes
 
+    def _gives_up_edits(self, why: str) -> bool:
+        box = QMessageBox(QMessageBox.Icon.Warning, texts.APPLICATION, texts.CLOSE_UNSAVED.format(why=why), parent=self)
+        close = box.addButton(texts.CLOSE_ANYWAY, QMessageBox.ButtonRole.DestructiveRole)
+        keep = box.addButton(texts.KEEP_OPEN, QMessageBox.ButtonRole.RejectRole)
+        box.setDefaultButton(keep)
+        box.setEscapeButton(keep)
+        box.exec()
+        return box.clickedButton() is close
+
     # Layout
 
     def _restore_layout(self) -> None:
@@ -225,6 +234,10 @@ class MainWindow(AskingWindow):
     def closeEvent(self, event) -> None:
         """Remember the layout and stop everything; a film that is being written is not given up without a word."""
         if self.authoring.jobs.is_running("export") and not self._gives_up_export():
+            event.ignore()
+            return
+        unsaved = self.keeper.last_save_refused()
+        if unsaved and not self._gives_up_edits(unsaved):
             event.ignore()
             return
         self._save_layout()

@@ -4,7 +4,7 @@ import pytest
 
 from app import texts
 from app.curating import Curating
-from core.document.curation_edits import RemoveMotionNodes
+from core.document.curation_edits import RemoveMotionNodes, RestoreMotionNodes
 from core.document.document import Document
 from core.document.edits import SetDatabase
 from core.errors import UserFacingError
@@ -43,6 +43,7 @@ def test_the_second_window_reads_and_says_so(opened, database):
     assert (noted, told) == ([], [texts.DATABASE_OPEN_ELSEWHERE])
     assert one.can_be_written and not two.can_be_written
     first.apply(RemoveMotionNodes.on(first, ["s0:1"], Removal.now("x"), False))
+    one.wait()
     two.refresh()
     assert set(CurationList.of(database).read()) == {"s0:1"} == set(two._document.shared_removals)
 
@@ -69,3 +70,35 @@ def test_another_database_lets_go_of_the_first(opened, database, tmp_path):
     document.apply(SetDatabase.on(document, other))
     _, second, told = opened()
     assert second.can_be_written and told == []
+
+
+def test_edits_are_written_in_their_order_and_none_is_taken_back(opened, database, qapp):
+    document, curating, _ = opened()
+    names = ["s0:1", "s0:2", "s0:3"]
+    for name in names:
+        document.apply(RemoveMotionNodes.on(document, [name], Removal.now("x"), False))
+        qapp.processEvents()
+        assert name in document.shared_removals
+    document.apply(RestoreMotionNodes.on(document, ["s0:2"]))
+    curating.wait()
+    qapp.processEvents()
+    assert set(document.shared_removals) == {"s0:1", "s0:3"} == set(CurationList.of(database).read())
+
+
+def test_a_list_that_cannot_be_written_is_said_and_the_next_edit_writes_all(opened, database, qapp, monkeypatch):
+    document, curating, _ = opened()
+    told = []
+    curating.failed.connect(lambda sentence, _remedy: told.append(sentence))
+
+    def full(*_):
+        raise UserFacingError("The disk is full.")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(CurationList, "_write", full)
+        document.apply(RemoveMotionNodes.on(document, ["s0:1"], Removal.now("x"), False))
+        curating.wait()
+    qapp.processEvents()
+    assert told == ["The disk is full."] and CurationList.of(database).read() == {}
+    document.apply(RemoveMotionNodes.on(document, ["s0:2"], Removal.now("x"), False))
+    curating.wait()
+    assert set(CurationList.of(database).read()) == {"s0:1", "s0:2"}

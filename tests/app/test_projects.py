@@ -15,6 +15,7 @@ from app.project_jobs import is_unnamed
 from app.settings import last_project, window_settings
 from core.document.content import ProjectContent
 from core.document.project_file import ProjectFile, read_project
+from core.errors import UserFacingError
 from core.media.video import FRAME_RATES
 from core.motion.curation import CurationList
 from core.motion.motion_files import read_motion
@@ -167,12 +168,14 @@ def test_two_windows_share_removed_nodes_and_not_the_project(working, open_windo
     first.authoring.remove_nodes([used], "a spike")
     qtbot.waitUntil(idle(first), timeout=WAIT_MS)
     assert document.database.nodes.name(document.answer.path.nodes[2]) != used
+    first.authoring.curating.wait()
     second.authoring.curating.refresh()
     theirs = second.authoring.document
     assert theirs.shared_removals[used].why == "a spike"
     qtbot.waitUntil(idle(second), timeout=WAIT_MS)
     assert theirs.database.nodes.name(theirs.answer.path.nodes[2]) != used
     first.authoring.undo_stack.undo()
+    first.authoring.curating.wait()
     assert CurationList.of(document.database).read() == {}
     qtbot.waitUntil(idle(first), timeout=WAIT_MS)
 
@@ -273,3 +276,29 @@ def test_a_drag_is_one_entry_and_undoes_at_once(working, qtbot):
     authoring.undo_stack.undo()
     assert authoring.document.speech.transcript == before
     qtbot.waitUntil(idle(window), timeout=WAIT_MS)
+
+
+def test_a_disk_that_refuses_is_told_before_the_window_closes(working, monkeypatch):
+    window = working()
+    edited(window)
+    written(window)
+    asked, answers = [], [False, True]
+
+    def refuse(*_):
+        raise UserFacingError("The disk is full.")
+
+    def gives_up(why):
+        asked.append(why)
+        return answers.pop(0)
+
+    monkeypatch.setattr(ProjectFile, "save", refuse)
+    monkeypatch.setattr(window, "_gives_up_edits", gives_up)
+    assert not window.close() and window.isVisible() and window.keeper.file is not None
+    assert window.close() and not window.isVisible()
+    assert len(asked) == 2 and all("The disk is full." in why for why in asked)
+
+
+def test_a_disk_that_takes_everything_asks_nothing(working, monkeypatch):
+    window = working()
+    monkeypatch.setattr(window, "_gives_up_edits", lambda why: pytest.fail(why))
+    assert window.close()

@@ -199,6 +199,7 @@ def tell_the_story(animator: Animator, again, database_path, contaminated, recor
     animator.presses(Qt.Key.Key_Return, widget=isomap.strip.reason)
     assert document.removed == {name}
     animator.waits_until_all_is_done()
+    window.authoring.curating.wait()
     assert set(CurationList.of(document.database).read()) == {name}
     at_last, last_solution = animator.content(), animator.solution()
     assert last_solution != first_solution

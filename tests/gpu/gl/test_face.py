@@ -8,6 +8,7 @@ import pytest
 from core.face.face import PARTS, Face
 from gpu.gl.camera import Camera
 from gpu.gl.face import FaceRenderer, Style
+from gpu.gl.face_arrays import FaceArrays
 
 BOUNDS = np.array([[-90.0, -90, -90], [90, 90, 90]])
 FRONT = Camera.front(BOUNDS)
@@ -163,3 +164,31 @@ def test_a_released_renderer_leaves_the_context_to_the_next(offscreen, head):
         made.release()
     np.testing.assert_array_equal(pictures[0], pictures[2])
     assert offscreen.ctx.error == "GL_NO_ERROR"
+
+
+def _drawn(offscreen, head, new_at_most=None, arrays=None):
+    """Return what each call drew until one was whole."""
+    renderer, told, pictures = FaceRenderer(offscreen.ctx), [], []
+    renderer.set_face(head, arrays=arrays)
+    camera = Camera.front(np.stack([head.positions.min(axis=0), head.positions.max(axis=0)]))
+
+    def draw(frame):
+        told.append(renderer.draw(frame, camera, Style.TEXTURED, new_at_most=new_at_most))
+
+    while not told or not told[-1]:
+        pictures.append(offscreen.frame(draw))
+    renderer.release()
+    return pictures
+
+
+def test_a_shader_at_a_time_ends_in_the_same_picture(offscreen, head):
+    """Until then the picture holds the backdrop alone, so nobody sees half a face."""
+    (at_once,), (*before, at_last) = _drawn(offscreen, head), _drawn(offscreen, head, new_at_most=1)
+    assert (at_last == at_once).all()
+    assert before and all((picture == before[0]).all() for picture in before)
+    assert (before[0] != at_once).any()
+
+
+def test_arrays_worked_out_elsewhere_draw_the_same(offscreen, head):
+    (own,), (given,) = _drawn(offscreen, head), _drawn(offscreen, head, arrays=FaceArrays.of(head))
+    assert (own == given).all()
