@@ -45,9 +45,8 @@ class FaceRenderer:
         self._backdrop_array = ctx.vertex_array(self._backdrop, [])
         self.markers = MarkerCloud(ctx)
         self.ghosts = MarkerCloud(ctx, GHOST_RADIUS_MM)
-        grain = complexion.grain()
-        self._grain = ctx.texture3d(grain.shape[:3], 4, grain.tobytes())
-        self._grain.filter = moderngl.LINEAR, moderngl.LINEAR
+        # made with the first face, as working it out takes a while
+        self._grain: moderngl.Texture3D | None = None
         self._picture: moderngl.Texture | None = None
         self._face: Face | None = None
         # how much light reaches each vertex of the face at rest, 0..1
@@ -83,6 +82,10 @@ class FaceRenderer:
         self._haired = np.flatnonzero(self._hair_lift > 0)
 
         ctx = self._ctx
+        if self._grain is None:
+            grain = complexion.grain()
+            self._grain = ctx.texture3d(grain.shape[:3], 4, grain.tobytes())
+            self._grain.filter = moderngl.LINEAR, moderngl.LINEAR
         self._positions = ctx.buffer(rest.tobytes(), dynamic=True)
         self._normal_buffer = ctx.buffer(normals.tobytes(), dynamic=True)
         places, surfaces = ctx.buffer(known.places.tobytes()), ctx.buffer(surface.tobytes())
@@ -196,7 +199,9 @@ class FaceRenderer:
         self.markers.release()
         self.ghosts.release()
         self.set_texture(None)
-        for thing in (self._backdrop_array, self._backdrop, self._wire, self._grain):
+        if self._grain is not None:
+            self._grain.release()
+        for thing in (self._backdrop_array, self._backdrop, self._wire):
             thing.release()
 
     def _clear(self, framebuffer: moderngl.Framebuffer, background: tuple[float, float, float] | None) -> None:
