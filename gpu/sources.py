@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import posixpath
 import re
-from collections.abc import Mapping
-from functools import reduce
+from collections.abc import Callable, Mapping
+from functools import cache, reduce
 from importlib.resources import files
 
 from core.errors import WorkstationError
@@ -126,9 +126,15 @@ def _join(root: str) -> tuple[list[str], list[str]]:
 
 def _read(name: str, asked_by: str, asked_at: int | None = None) -> str:
     try:
-        return reduce(lambda folder, part: folder.joinpath(part), name.split("/"), files("shaders")).read_text("utf-8")
+        return _text(name, files)
     except (OSError, ModuleNotFoundError) as error:
         raise ShaderError(asked_by, asked_at, f"there is no shader file {name}") from error
+
+
+@cache
+def _text(name: str, folder_of: Callable) -> str:
+    # looking into an installed package takes some milliseconds a file, and a face has ten shaders of the same two
+    return reduce(lambda folder, part: folder.joinpath(part), name.split("/"), folder_of("shaders")).read_text("utf-8")
 
 
 def _line_directive(name: str, line: int, number: int) -> str:
