@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QIcon, QPainter, QPixmap
-from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QSplitter, QToolButton, QVBoxLayout, QWidget
 
 from app import texts
 from app.emotion_colours import emotion_colours
-from app.panels.pane import Choice, label, toggle
+from app.panels.pane import Choice, label
 from app.panels.timeline.control_page import ControlPage
 from app.panels.timeline.ruler import UNITS
 from app.panels.timeline.snapping import FREE, PHONEMES, WORDS
@@ -19,6 +19,7 @@ from core.speech.emotion import EMOTIONS
 
 _ZOOM = 1.5
 _DOT_PX = 10
+_WAVE_KEPT_PX = 2 * STEP
 
 
 class TimelinePane(QWidget):
@@ -27,6 +28,7 @@ class TimelinePane(QWidget):
     def __init__(self, timeline: Timeline) -> None:
         super().__init__()
         self.timeline = timeline
+        self._own_before_px = 0
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
@@ -35,7 +37,23 @@ class TimelinePane(QWidget):
         column.addWidget(timeline, 1)
         self.curves = ControlPage(timeline)
         column.addWidget(self.curves)
-        self.bar.curves.toggled.connect(self.curves.open)
+        self.bar.curves.toggled.connect(self.open_curves)
+
+    def open_curves(self, is_open: bool) -> None:
+        """Show the control curves or put them away; the panes above and the wave give the room, and get it back."""
+        splitter = self.parentWidget()
+        before = splitter.sizes() if isinstance(splitter, QSplitter) else None
+        self.curves.open(is_open)
+        if before is None:
+            return
+        if is_open:
+            self._own_before_px = before[1]
+            own = self.minimumSizeHint().height() - self.curves.minimumSizeHint().height()
+            own += self.curves.sizeHint().height() + _WAVE_KEPT_PX
+        else:
+            own = self._own_before_px
+        own = min(own, sum(before) - splitter.widget(0).minimumSizeHint().height())
+        splitter.setSizes([sum(before) - own, own])
 
 
 class TimelineBar(QWidget):
@@ -73,7 +91,8 @@ class TimelineBar(QWidget):
         self.spectrogram = self._button(texts.SPECTROGRAM, texts.SPECTROGRAM_TIP, timeline.heard.want_spectrogram)
         self.spectrogram.setCheckable(True)
         row.addWidget(self.spectrogram)
-        self.curves = toggle(curve_texts.TOGGLE, curve_texts.TOGGLE_TIP, lambda _: None)
+        self.curves = self._button(curve_texts.TOGGLE, curve_texts.TOGGLE_TIP, lambda _: None)
+        self.curves.setCheckable(True)
         row.addWidget(self.curves)
         self.units = Choice([(unit, texts.UNITS[unit], texts.UNITS_TIP) for unit in UNITS])
         self.units.choose(timeline.ruler.unit)

@@ -22,7 +22,7 @@ from app.theme import STEP, colour, small_font, theme
 from core.speech.phoneme import PAU
 from core.synthesis.control_edits import LONGEST_REACH_S, NO_CURVE_EDITS, SHORTEST_REACH_S, ControlKey
 
-_HEIGHT_PX, _RULES_PX, _GAP_PX = 236, 68, 8
+_HEIGHT_PX, _LEAST_PX, _RULES_PX, _GAP_PX = 212, 136, 64, 8
 _KEY_PX, _GRAB_PX, _DRAG_PX, _STEP_PX = 4.5, 8.0, 3, 2
 _NUDGE_SHARE, _NUDGE_S = 0.02, 1 / 60
 _WIDEN = 1.15
@@ -51,7 +51,7 @@ class ControlGraph(QWidget):
         self.setStatusTip(texts.HINT)
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setMinimumHeight(_HEIGHT_PX)
+        self.setMinimumHeight(_LEAST_PX)
         self.shown.changed.connect(self._on_curves_changed)
         timeline.renewed.connect(self.renew)
         timeline.authoring.view.playhead_moved.connect(lambda _: self.update())
