@@ -8,7 +8,7 @@ from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
 
 from app.panels.timeline.lanes import TimeScale
 from app.panels.timeline.shown_curves import FoundCurves
-from app.theme import THEMES, small_font, theme
+from app.theme import STEP, THEMES, colour, small_font, theme
 from core.speech.phoneme import PAU, PHONEME_INDEX
 
 _STEP_PX = 2
@@ -35,8 +35,6 @@ def paint_dominances(
         return
     xs = np.arange(left, right, _STEP_PX)
     frames = (scale.start_s + (xs - scale.left_px) / scale.px_per_s) * rate_hz
-    painter.setFont(small_font())
-    metrics = painter.fontMetrics()
     room = area.height() - 4
     for j, utterance in enumerate(said):
         heights = np.interp(frames, np.arange(shares.shape[1]), shares[j])
@@ -53,9 +51,21 @@ def paint_dominances(
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.setPen(QPen(phoneme_colour(utterance.phone, 0.35 if faded else 1.0), 2.0 if hovered == j else 1.2))
         painter.drawPolyline(QPolygonF(line))
-        width = scale.x(utterance.end_s) - scale.x(utterance.start_s)
-        if utterance.phone != PAU and metrics.horizontalAdvance(utterance.phone) + 2 < width and not faded:
-            box = QRectF(scale.x(utterance.start_s), area.bottom() - metrics.height() - 1, width, metrics.height())
+    _paint_names(painter, area, scale, curves, hovered)
+
+
+def _paint_names(painter: QPainter, area: QRectF, scale: TimeScale, curves: FoundCurves, hovered: int | None) -> None:
+    """Each phoneme within its hill, over all hills, where there is room."""
+    painter.setFont(small_font())
+    metrics = painter.fontMetrics()
+    for j, utterance in enumerate(curves.transcript.phonemes):
+        left, right = scale.x(utterance.start_s), scale.x(utterance.end_s)
+        middle = min(round((utterance.start_s + utterance.end_s) / 2 * curves.found.rate_hz), len(curves.found) - 1)
+        hill_px = curves.ruling.shares[j, middle] * (area.height() - 4)
+        fits = metrics.horizontalAdvance(utterance.phone) + 2 < right - left and hill_px > metrics.height()
+        if utterance.phone != PAU and (fits or hovered == j):
+            painter.setPen(colour(theme().text, 1.0 if hovered in (None, j) else 0.35))
+            box = QRectF(left - STEP, area.bottom() - hill_px + 1, right - left + 2 * STEP, metrics.height())
             painter.drawText(box, Qt.AlignmentFlag.AlignCenter, utterance.phone)
 
 
