@@ -83,6 +83,7 @@ def test_a_file_alone_opens_the_window(efase, project, monkeypatch):
     assert code == 2 and "There is no file 'gone.efase'" in said
     assert efase("nonsense")[0] == 2
 
+
 @pytest.mark.parametrize("engine", ["search-single", "search-paper", "phone-means"])
 def test_a_project_is_exported_by_the_engine_that_it_chose(efase, project, tmp_path, database_path, engine):
     path = project(True, DatabaseReference("tiny", "0", str(database_path)), engine)
