@@ -168,6 +168,7 @@ def test_hovering_the_hills_names_the_phoneme_and_its_share(graph, qtbot):
     slot = next(p for p, u in enumerate(transcript.phonemes) if u.phone == "aa")
     middle_s = (transcript.phonemes[slot].start_s + transcript.phonemes[slot].end_s) / 2
     at = QPoint(round(timeline.scale.x(middle_s)), round(graph.rules_area().center().y()))
+    graph.window_.move(0, -300)  # the screen of the tests is low, and a pointer stays on it
     QTest.mouseMove(graph, at)
     qtbot.waitUntil(lambda: graph._hovered == slot)
     words = graph.description(QPointF(at))
