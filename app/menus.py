@@ -10,7 +10,7 @@ from app import texts
 from app.actions import frame_rate_options
 from app.project_menu import ProjectMenu
 from app.settings import window_settings
-from app.texts import importing
+from app.texts import curves, importing
 from core.speech.emotion import EMOTIONS
 
 if TYPE_CHECKING:
@@ -111,6 +111,7 @@ def _timeline(window: MainWindow) -> None:
     add(time, "zoom_in", texts.ACTION_ZOOM_IN, ["+", "="], lambda: window.timeline.zoom(1.5))
     add(time, "zoom_out", texts.ACTION_ZOOM_OUT, "-", lambda: window.timeline.zoom(1 / 1.5))
     add(time, "zoom_all", texts.ACTION_ZOOM_ALL, "0", window.timeline.zoom_all)
+    add(time, "curves", curves.ACTION, "Ctrl+Shift+G", window.timeline_pane.bar.curves.click)
 
     time.addSeparator()
     add(time, "rename", texts.ACTION_RENAME, "F2", window.timeline.rename_selected)

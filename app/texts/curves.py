@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+ACTION = "Control &curves"
 TOGGLE = "curves"
-TOGGLE_TIP = "Show the controls of the face as curves, and which phoneme rules them"
+TOGGLE_TIP = "Show the controls of the face as curves, and which phoneme rules them (Ctrl+Shift+G)"
 TITLE = "CURVES"
 CHOOSE_TIP = "The control that is edited; the other lip controls are drawn thin"
 EDITED = "{control} ∗"

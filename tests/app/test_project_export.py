@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from core.document.content import ProjectContent
@@ -11,8 +12,11 @@ from core.document.parts import DatabaseReference
 from core.document.project_file import ProjectFile, read_project
 from core.motion.database import open_database
 from core.motion.motion_files import read_motion
+from core.rig.control_layer import laid_over
 from core.search.compute import NumpyKernels
+from core.synthesis.control_edits import NO_CONTROL_EDITS, ControlEdits, ControlKey
 from core.synthesis.engine import SpeechInput
+from core.synthesis.polish import NO_POLISH
 from core.synthesis.registry import make_engine
 from tests.core.document.random_edits import made_speech
 
@@ -28,12 +32,17 @@ def project(tmp_path):
 
     made = []
 
-    def make(speaks: bool, database: DatabaseReference | None = None, engine: str = "search"):
+    def make(
+        speaks: bool,
+        database: DatabaseReference | None = None,
+        engine: str = "search",
+        controls: ControlEdits = NO_CONTROL_EDITS,
+    ):
         made.append(tmp_path / f"project{len(made)}.efase")
         path, document = made[-1], Document()
         if speaks:
             document.apply(SetSpeech.on(document, made_speech(1)))
-        document.database_reference, document.engine = database, engine
+        document.database_reference, document.engine, document.controls = database, engine, controls
         file = ProjectFile.create(path)
         file.save(ProjectContent.of(document), None if document.speech is None else document.speech.audio)
         file.close()
@@ -70,6 +79,19 @@ def test_a_project_beside_its_database_finds_it(efase, project, tmp_path, databa
     (tmp_path / "tiny.h5").write_bytes(database_path.read_bytes())
     path = project(True, DatabaseReference("tiny", "0", "somewhere/else/tiny.h5"))
     assert efase("export", path, "-o", tmp_path / "a.c3d")[0] == 0
+
+
+def test_edits_of_the_control_curves_are_in_what_is_exported(efase, project, tmp_path, database_path, monkeypatch):
+    monkeypatch.setenv("EFASE_CACHE_DIR", str(tmp_path / "cache"))
+    edits = NO_CONTROL_EDITS.with_keys("component01", (ControlKey(0.4, 9.0, 0.2),)).muting("component02", True)
+    path = project(True, DatabaseReference("tiny", "0", str(database_path)), "animeme", edits)
+    assert efase("export", path, "-o", tmp_path / "a.csv")[0] == 0
+    positions, _, rate_hz = read_motion(tmp_path / "a.csv")
+    database, speech = open_database(database_path), SpeechInput(made_speech(1).transcript)
+    motion = make_engine("animeme", database, NumpyKernels()).synthesise(speech).motion
+    shown = laid_over(motion, database, edits, NO_POLISH).at_rate(rate_hz, len(positions))
+    assert np.allclose(positions, shown.positions, atol=1e-3)
+    assert not np.allclose(positions, motion.at_rate(rate_hz, len(positions)).positions, atol=1.0)
 
 
 def test_a_file_alone_opens_the_window(efase, project, monkeypatch):

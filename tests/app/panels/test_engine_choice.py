@@ -10,6 +10,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from app import texts
+from core.animeme import engine
 from core.document.content import ProjectContent
 from core.search.compute import NumpyKernels
 from core.synthesis import registry
@@ -86,6 +87,29 @@ def test_an_engine_without_a_path_says_so_in_the_empty_places(means_on_offer, an
     choose(window, qtbot, "search")
     assert document.path is not None and document.prices is not None
     assert window.control.engine.weights.isVisibleTo(window)
+
+
+def test_learning_animemes_can_be_given_up_and_taken_up_again(animated, qtbot, monkeypatch):
+    """The first time a model is learnt, with progress; a cancel leaves the motion on show and no half a model."""
+    authoring, document, learn, steps = animated.authoring, animated.authoring.document, engine.train_animemes, []
+
+    def endless(*_args, progress, **_kwargs):
+        while True:
+            steps.append(len(steps))
+            progress.step(0.5, "learning")
+
+    monkeypatch.setattr(engine, "train_animemes", endless)
+    before = document.answer
+    authoring.set_engine("animeme")
+    qtbot.waitUntil(lambda: len(steps) > 3, timeout=WAIT_MS)
+    qtbot.waitUntil(animated.status.cancel_button.isVisible, timeout=WAIT_MS)
+    QTest.mouseClick(animated.status.cancel_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: authoring.jobs.is_idle, timeout=WAIT_MS)
+    assert document.answer is before
+    monkeypatch.setattr(engine, "train_animemes", learn)
+    authoring.synthesise()
+    qtbot.waitUntil(lambda: document.answer is not before, timeout=WAIT_MS)
+    assert np.array_equal(document.motion.positions, made_by(document, "animeme"))
 
 
 def test_an_engine_of_a_newer_workstation_is_kept_and_told(animated, qtbot):

@@ -176,5 +176,15 @@ def test_hovering_the_hills_names_the_phoneme_and_its_share(graph, qtbot):
     assert curve_texts.RULER.split(" ")[1] in words
 
 
+def test_the_page_is_opened_and_closed_by_its_key_and_gives_its_room_back(graph, qtbot):
+    window = graph.window_
+    sizes = window.timeline_pane.height()
+    QTest.keyClick(window, Qt.Key.Key_G, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
+    assert not graph.isVisible()
+    qtbot.waitUntil(lambda: window.timeline_pane.height() < sizes)
+    QTest.keyClick(window, Qt.Key.Key_G, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
+    assert graph.isVisible()
+
+
 def test_a_model_that_was_learnt_is_read_the_next_time(graph, settings_folder, tmp_path):
     assert list((tmp_path / "cache" / "animemes").glob("*.npz"))
