@@ -12,7 +12,6 @@ from app.theme import STEP, THEMES, colour, small_font, theme
 from core.speech.phoneme import PAU, PHONEME_INDEX
 
 _STEP_PX = 2
-_LEAST_SHARE = 0.02
 _GOLDEN = 0.618034  # neighbours in the list of phonemes get hues far apart
 
 
@@ -37,12 +36,12 @@ def paint_dominances(
     frames = (scale.start_s + (xs - scale.left_px) / scale.px_per_s) * rate_hz
     room = area.height() - 4
     for j, utterance in enumerate(said):
-        heights = np.interp(frames, np.arange(shares.shape[1]), shares[j])
-        seen = np.flatnonzero(heights > _LEAST_SHARE)
-        if len(seen) == 0:
+        begin, stop = curves.reigns[j]
+        rows = slice(*np.searchsorted(frames, (begin - 1, stop + 1)))
+        if begin == stop or rows.start == rows.stop:
             continue
-        rows = np.arange(max(seen[0] - 1, 0), min(seen[-1] + 2, len(xs)))
-        line = [QPointF(xs[i], area.bottom() - heights[i] * room) for i in rows]
+        heights = np.interp(frames[rows], np.arange(begin, stop), shares[j, begin:stop])
+        line = [QPointF(x, area.bottom() - height * room) for x, height in zip(xs[rows], heights)]
         hill = QPolygonF([QPointF(line[0].x(), area.bottom()), *line, QPointF(line[-1].x(), area.bottom())])
         faded = hovered is not None and hovered != j
         painter.setPen(Qt.PenStyle.NoPen)

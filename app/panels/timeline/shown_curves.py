@@ -23,6 +23,8 @@ from core.speech.transcript import Transcript
 from core.synthesis.control_edits import ControlEdits
 from core.synthesis.marker_motion import MarkerMotion
 
+LEAST_SHARE = 0.02
+
 
 @dataclass(frozen=True, eq=False)
 class FoundCurves:
@@ -42,13 +44,24 @@ class FoundCurves:
         """The curves under the edits."""
         return edited_curves(self.found, self.basis, self.edits)
 
+    @cached_property
+    def reigns(self) -> np.ndarray:
+        """First frame in which each phoneme has a say worth drawing, and the one after the last; int, shape (J, 2)."""
+        has_say = self.ruling.shares > LEAST_SHARE
+        first, last = has_say.argmax(axis=1), has_say.shape[1] - has_say[:, ::-1].argmax(axis=1)
+        return np.column_stack([first, np.where(has_say.any(axis=1), last, first)])
+
+    @cached_property
+    def _ranges(self) -> np.ndarray:
+        both = np.concatenate([self.found.values, self.edited.values])
+        return np.stack([both.min(axis=0), both.max(axis=0)])
+
     def span(self, control: str) -> tuple[float, float]:
         """Return the values between which a control is drawn."""
         if self.basis.has_units:
             return 0.0, 1.0
-        values = np.stack([self.found.values, self.edited.values])[:, :, [self.found.names.index(n) for n in
-                                                                        {control, *self.basis.shown}]]  # fmt: skip
-        return float(values.min()), float(max(values.max(), values.min() + 1e-3))
+        lowest, highest = self._ranges[:, [self.found.names.index(name) for name in (control, *self.basis.shown)]]
+        return float(lowest.min()), float(max(highest.max(), lowest.min() + 1e-3))
 
 
 @dataclass(frozen=True)
