@@ -76,3 +76,19 @@ def test_edited_units_stay_within_their_bounds():
         edits = NO_CONTROL_EDITS.with_keys("jawOpen", (ControlKey(0.5, amount, 0.2),))
         values = edited_curves(curves, basis, edits).values
         assert values[30, 0] == bound and values.min() >= 0 and values.max() <= 1
+
+
+def test_cross_mapping_finds_the_edited_units_again(database, monkeypatch):
+    """What an artist draws is what a Live Link file holds: the same solve reads the edited motion."""
+    rng = np.random.default_rng(6)
+    basis = ControlBasis(
+        ("jawOpen", "mouthPucker"), 9 * rng.normal(size=(2, 9, 3)), np.zeros(2), 0.0, 1.0, ("jawOpen",)
+    )
+    monkeypatch.setattr(ControlBasis, "of", lambda _database: basis)
+    values = rng.uniform(0.2, 0.7, size=(60, 2))
+    positions = database.markers.rest + np.tensordot(values, basis.moves, 1)
+    motion = MarkerMotion(positions.astype(np.float32), RATE_HZ, database.markers)
+    edits = NO_CONTROL_EDITS.with_keys("jawOpen", (ControlKey(0.5, 0.2, 0.2),)).muting("mouthPucker", True)
+    found = basis.curves(laid_over(motion, database, edits, NO_POLISH), database).values
+    assert np.allclose(found[:, 0], values[:, 0] + edits.of("jawOpen").keys[0].at(np.arange(60) / RATE_HZ), atol=5e-3)
+    assert np.abs(found[:, 1]).max() < 5e-3
