@@ -13,7 +13,7 @@ test: $(VENV)/.prepared $(VENV)/.tools lint
 	$(BIN)/python -m pytest -q -m "not prove"
 
 prove: $(VENV)/.prepared $(VENV)/.tools
-	$(BIN)/python -m pytest -q -m prove
+	$(BIN)/python -m pytest -q -m prove -o faulthandler_timeout=3600
 
 lint: $(VENV)/.tools
 	$(BIN)/ruff check .

@@ -108,7 +108,7 @@ def settings_folder(tmp_path, monkeypatch, known_backends):
 
 
 @pytest.fixture
-def open_window(qtbot, qapp, settings_folder):
+def open_window(qtbot, qapp, settings_folder, monkeypatch):
     """Return a function that shows a main window without a demo, with a face if asked; all are closed at the end."""
     from app.authoring import Authoring
     from app.theme import apply_theme
@@ -128,6 +128,9 @@ def open_window(qtbot, qapp, settings_folder):
 
     yield make
     for window in opened:
+        # a question that nobody answers would stand for ever
+        monkeypatch.setattr(window, "_gives_up_export", lambda: True)
+        monkeypatch.setattr(window, "_gives_up_edits", lambda why: True)
         window.close()
         window.deleteLater()
     qapp.processEvents()

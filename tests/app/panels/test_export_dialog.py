@@ -27,7 +27,7 @@ def test_the_selected_part_is_written_at_the_size_that_was_asked_for(dialog, ani
     dialog.size.setCurrentText("320x240")
     dialog.path.setText(str(tmp_path / "part.avi"))
     QTest.mouseClick(dialog.export_button, LEFT)
-    qtbot.waitUntil(lambda: (tmp_path / "part.avi").is_file(), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not animated.authoring.jobs.is_running("export"), timeout=WAIT_MS)
     facts = probe(tmp_path / "part.avi")
     chosen = animated.authoring.document.speech.transcript.phonemes[2]
     assert (facts.width, facts.height) == (320, 240)
