@@ -45,18 +45,27 @@ def write_motion_controls(
     return warnings
 
 
+def check_rigs(outputs: Sequence[Path], face: FaceChoice, key_poses: Path | None, plain_csv: bool) -> None:
+    """Raise `UserFacingError`, before any work, when one of ``outputs`` would hold shapes that ``face`` has not.
+
+    plain_csv : see `core.pipeline.control_files.control_suffix`
+    """
+    for path in outputs:
+        if needs_rig(control_suffix(path, plain_csv)):
+            one_rig(face, key_poses, path)
+
+
 def check_control_outputs(outputs: Sequence[Path], face: str) -> None:
     """Raise `UserFacingError`, before any work, when controls alone cannot be written to one of ``outputs``."""
     for path in outputs:
         suffix = control_suffix(path, plain_csv=True)
         if suffix is not None:
             check_control_suffix(suffix)
-            if needs_rig(suffix):
-                one_rig(FaceChoice(face), None, path)
         elif path.suffix.lower() not in _DRAWN:
             raise UserFacingError(f"'{path}' has no suffix that curves can be written to.",
                                   f"Known are .csv, {', '.join((*SUFFIXES, *_DRAWN))}.")  # fmt: skip
         check_target(numbered(path, 0) if path.suffix.lower() == IMAGE_SUFFIX else path)
+    check_rigs(outputs, FaceChoice(face), None, plain_csv=True)
 
 
 def write_track(

@@ -21,6 +21,7 @@ from core.document.edits import (
     SetControls,
     SetEmotion,
     SetEngine,
+    SetHolds,
     SetOutput,
     SetPolish,
     SetReferenceVideo,
@@ -171,6 +172,11 @@ class Editing(Looking):
         """Let another engine make the motion, one of `core.synthesis.registry.ENGINES`."""
         if name != self.document.engine:
             self.attempt(lambda: SetEngine.on(self.document, name))
+
+    def set_holds(self, holds: bool) -> None:
+        """Keep dragged sounds at their middle, or let them fade."""
+        if holds != self.document.holds:
+            self.push(SetHolds.on(self.document, holds))
 
     def set_weights(self, weights: SearchWeights | None, label: str, gesture: int | None = None) -> None:
         """Search under other weights; None are the database's own."""

@@ -39,6 +39,7 @@ class LipsyncJob:
     strict: bool = False
     language: str | None = None
     phone_table: str | None = None
+    holds: bool = False
 
 
 def run(job: LipsyncJob, progress: Progress = SILENT) -> dict[str, object]:
@@ -63,7 +64,7 @@ def run(job: LipsyncJob, progress: Progress = SILENT) -> dict[str, object]:
     modifiers = emotion_modifiers(job.emotion, job.emotions, speech.audio.duration_s)
     fps, n_frames = job.video.fps, n_video_frames(speech.audio.duration_s, job.video.fps)
     began = time.perf_counter()
-    track = model.curves(speech.transcript, float(fps), modifiers, n_frames)
+    track = model.curves(speech.transcript, float(fps), modifiers, n_frames, job.holds)
     synthesis_s = time.perf_counter() - began
     if poses is not None:
         track = share_controls(poses, load_rig(job.face), track)

@@ -8,6 +8,7 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from app.control_export import check_rigs
 from app.demo import open_named
 from app.export import VideoSettings, check_outputs, rounded_seconds, write_outputs
 from app.speech import emotion_modifiers, load_speech
@@ -18,7 +19,7 @@ from core.motion.stored_weights import named_weights
 from core.progress import SILENT, Progress
 from core.search.best_path import MotionPath
 from core.synthesis.engine import MotionEngine, SpeechInput
-from core.synthesis.registry import DEFAULT_ENGINE, engine_kind, make_engine
+from core.synthesis.registry import DEFAULT_ENGINE, ENGINES, engine_kind, make_engine
 from gpu.device import open_kernels
 
 _SLOT = re.compile("[0-9]{1,9}")
@@ -36,6 +37,7 @@ class SynthesisJob:
     emotion: str | None = None
     emotions: Path | None = None
     engine: str = DEFAULT_ENGINE
+    holds: bool = False
     face: str = "default"
     marker_file: Path | None = None
     key_poses: Path | None = None
@@ -78,9 +80,14 @@ def run(job: SynthesisJob, progress: Progress = SILENT, ready: Ready | None = No
     kind = engine_kind(job.engine)
     check_outputs(list(job.outputs))
     _check_inputs(job)
+    face = FaceChoice(job.face, None if job.marker_file is None else str(job.marker_file))
+    check_rigs(job.outputs, face, job.key_poses, job.csv_is_live_link)
     pins = _pins(job.pins)
     if pins and not kind.searches:
         raise UserFacingError(f"The engine '{job.engine}' takes no motion nodes, so none can be pinned.")
+    if job.holds and not kind.can_hold:
+        holding = ", ".join(name for name, known in ENGINES.items() if known.can_hold)
+        raise UserFacingError(f"The engine '{job.engine}' cannot hold long sounds.", f"These can: {holding}.")
     ready = ready or made_ready(job, progress.part(0.0, 0.1))
     database, engine = ready.database, ready.engine
 
@@ -90,7 +97,7 @@ def run(job: SynthesisJob, progress: Progress = SILENT, ready: Ready | None = No
     modifiers = emotion_modifiers(job.emotion, job.emotions, speech.audio.duration_s)
     aligned_s = time.perf_counter() - began
     asked = time.perf_counter()
-    question = SpeechInput(speech.transcript, modifiers, pins, audio=speech.audio)
+    question = SpeechInput(speech.transcript, modifiers, pins, audio=speech.audio, holds=job.holds)
     answer = engine.synthesise(question, progress.part(0.25, 0.5))
     path, search_s = getattr(answer, "path", None), getattr(answer, "search_s", 0.0)
     synthesis_s = getattr(answer, "synthesis_s", time.perf_counter() - asked)
@@ -100,7 +107,6 @@ def run(job: SynthesisJob, progress: Progress = SILENT, ready: Ready | None = No
     if kind.searches and job.backend == "auto" and ready.on_numpy:
         warnings.append(ready.backend_sentence)
     warnings += answer.warnings
-    face = FaceChoice(job.face, None if job.marker_file is None else str(job.marker_file))
     stage = progress.part(0.5, 1.0)
     warnings += write_outputs(job.outputs, answer.motion, speech.audio, speech.transcript, job.video, face, stage,
                               job.key_poses, job.csv_is_live_link)  # fmt: skip

@@ -108,6 +108,8 @@ ENGINE_TIP = (
 )
 NO_PATH = "takes no path through the database:\nno costs, prices, pins or weights"
 NO_PATH_TIP = "This engine makes motion of its own; what is pinned or locked waits until a search is chosen."
+HOLD = "hold long sounds"
+HOLD_TIP = "A sound that is dragged or sung longer than any that was learnt from keeps its shape"
 NO_COST = "No cost: no path"
 NO_STRIP = "none: this engine takes no path through the database"
 NO_NODE_IN_USE = "this engine uses no motion node"

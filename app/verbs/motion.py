@@ -8,8 +8,26 @@ from typing import Annotated
 import typer
 
 from app.terminal import note, print_json, progress_bar, warn
-from app.verbs.options import OUTPUTS, Background, Database, Json, KeyPoses, Language, Lexicon, PhoneTable, Span, Strict
+from app.verbs.options import (
+    OUTPUTS,
+    Background,
+    Database,
+    Hold,
+    Json,
+    KeyPoses,
+    Language,
+    Lexicon,
+    PhoneTable,
+    Span,
+    Strict,
+)
 from core.errors import UserFacingError
+
+# of core.synthesis.registry, which takes too long to import for a help text; a test compares them
+_ENGINES = (
+    "search, search-single (one path), search-paper (printed) or animeme; to compare with: animeme-printed, mmm, "
+    "cohen-massaro, phone-means, random, static."
+)
 
 
 def demo(
@@ -42,7 +60,8 @@ def synth(
     db: Database = None,
     emotion: Annotated[str | None, typer.Option(help="neutral, happiness, anger or sadness.")] = None,
     emotions: Annotated[Path | None, typer.Option(help="Text lines `start end emotion [intensity]`.")] = None,
-    engine: Annotated[str, typer.Option(help="search, search-single (one path) or search-paper (printed).")] = "search",
+    engine: Annotated[str, typer.Option(help=_ENGINES)] = "search",
+    hold: Hold = False,
     face: Annotated[
         str, typer.Option(help="default, ben, rosa, otto, pip, cast (all), or a mesh: OBJ, PLY, glTF.")
     ] = "default",
@@ -75,7 +94,7 @@ def synth(
         raise UserFacingError("Name a sound and its outputs, or a table of them with --batch.")
     job = SynthesisJob(
         audio=audio or batch, outputs=tuple(output or ()), text=text, phones=phones, database=db, emotion=emotion,
-        emotions=emotions, engine=engine, face=face, marker_file=markers, key_poses=poses,
+        emotions=emotions, engine=engine, holds=hold, face=face, marker_file=markers, key_poses=poses,
         csv_is_live_link=engine == "animeme", backend=backend, pins=tuple(pin or ()),
         weights=weights,
         video=VideoSettings(frame_rate(fps), *video_size(size), style, start_frame, head, gaze, texture,

@@ -21,6 +21,7 @@ Database = Annotated[Path | None, typer.Option("--db", help="Motion database; th
 Lexicon = Annotated[Path | None, typer.Option(help="Pronunciations of names and coined words, `word phone phone …`.")]
 Strict = Annotated[bool, typer.Option(help="Refuse phones that are not in the set, instead of taking the nearest.")]
 Language = Annotated[str | None, typer.Option(help="The text's language, as espeak-ng names it: de, fr-fr, ...")]
+Hold = Annotated[bool, typer.Option("--hold", help="Animemes: dragged and sung sounds keep their shape.")]
 PhoneTable = Annotated[
     str | None, typer.Option("--phone-table", help="What names in the phone file stand for: pinyin, or a file.")
 ]

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from app.terminal import print_json, progress_bar, warn
-from app.verbs.options import Background, Database, Json, KeyPoses, Language, Lexicon, PhoneTable, Span, Strict
+from app.verbs.options import Background, Database, Hold, Json, KeyPoses, Language, Lexicon, PhoneTable, Span, Strict
 from core.errors import UserFacingError
 
 _OUTPUTS = (
@@ -29,6 +29,7 @@ def lipsync(
     ] = None,
     emotion: Annotated[str | None, typer.Option(help="neutral, happiness, anger or sadness.")] = None,
     emotions: Annotated[Path | None, typer.Option(help="Text lines `start end emotion [intensity]`.")] = None,
+    hold: Hold = False,
     face: Annotated[str, typer.Option(help=_FACE)] = "default",
     poses: KeyPoses = None,
     fps: Annotated[str, typer.Option(help="24, 25, 29.97, 30 or 60.")] = "30",
@@ -59,6 +60,7 @@ def lipsync(
     common = dict(
         audio=audio, outputs=tuple(output), text=text, phones=phones, emotion=emotion, emotions=emotions, face=face,
         key_poses=poses, video=video, lexicon=lexicon, strict=strict, language=language, phone_table=phone_table,
+        holds=hold,
     )  # fmt: skip
     with progress_bar("lipsync") as progress:
         if model is None:

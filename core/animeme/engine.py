@@ -25,11 +25,15 @@ _VERSION = 1  # raise it when training changes, so that cached models are not ta
 
 @dataclass(frozen=True)
 class AnimemeAnswer:
-    """Motion, the curves of the components that made it, and the animemes that these are of, if they are."""
+    """Motion, the curves of the components that made it, and the animemes that these are of, if they are.
+
+    holds : whether dragged sounds were kept at their middle
+    """
 
     motion: MarkerMotion
     curves: ControlTrack
     model: AnimemeModel | None = None
+    holds: bool = False
     warnings: tuple[str, ...] = ()
 
 
@@ -40,16 +44,13 @@ class AnimemeEngine:
     The model is learnt on first use and kept in the cache, by the content of the database. Slots that ask for a mix of
     emotions get that mix of their animemes.
 
-    holds : keep dragged sounds at their middle (see `core.animeme.dominance.held`)
     model : a trained model of these components; None learns or reads the default one
     """
 
     name = "animeme"
 
-    def __init__(
-        self, database: MotionDatabase, form: AnimemeForm = BEST, holds: bool = False, model: AnimemeModel | None = None
-    ) -> None:
-        self.database, self.form, self.holds = database, form, holds
+    def __init__(self, database: MotionDatabase, form: AnimemeForm = BEST, model: AnimemeModel | None = None) -> None:
+        self.database, self.form = database, form
         self._names = component_controls(database)[0]
         if model is not None and model.names != self._names:
             raise UserFacingError(
@@ -72,9 +73,11 @@ class AnimemeEngine:
         """Evaluate equation 1 at the rate of the database."""
         self.prepare(progress.part(0.0, 0.9))
         database = self.database
-        curves = self._model.curves(speech.transcript, database.rate_hz, speech.modifiers, holds=self.holds)
+        curves = self._model.curves(speech.transcript, database.rate_hz, speech.modifiers, holds=speech.holds)
         positions = database.pca.positions(curves.values).astype(np.float32)
-        return AnimemeAnswer(MarkerMotion(positions, database.rate_hz, database.markers), curves, self._model)
+        return AnimemeAnswer(
+            MarkerMotion(positions, database.rate_hz, database.markers), curves, self._model, speech.holds
+        )
 
 
 def component_animemes(database: MotionDatabase, form: AnimemeForm = BEST, progress: Progress = SILENT) -> AnimemeModel:

@@ -54,6 +54,7 @@ class ProjectContent:
     removed_here: Mapping[str, Removal] = field(default_factory=lambda: EMPTY)
     kept: frozenset[str] = frozenset()
     engine: str = DEFAULT_ENGINE
+    holds: bool = False
     weights: SearchWeights | None = None
     face: FaceChoice | None = DEFAULT_FACE
     reference_video: ReferenceVideo | None = None
@@ -82,7 +83,7 @@ class ProjectContent:
             text="" if speech is None else speech.text,
             modifiers=document.modifiers, pins=document.pins, locks=document.locks,
             removed_here=document.removed_here, kept=document.kept, engine=document.engine,
-            weights=document.weights, face=document.face,
+            holds=document.holds, weights=document.weights, face=document.face,
             reference_video=document.reference_video, output=document.output, polish=document.polish,
             controls=document.controls,
             database=document.database_reference, tied=_tied(document, tied),
@@ -97,7 +98,7 @@ class ProjectContent:
         return ProjectState(
             database=database, database_reference=self.database, speech=speech, modifiers=self.modifiers,
             pins=self.pins, locks=self.locks, removed_here=self.removed_here, kept=self.kept, engine=self.engine,
-            weights=self.weights, face=self.face, reference_video=self.reference_video,
+            holds=self.holds, weights=self.weights, face=self.face, reference_video=self.reference_video,
             output=self.output, polish=self.polish, controls=self.controls,
         )  # fmt: skip
 
@@ -120,6 +121,7 @@ class ProjectContent:
             "removed_here": {node: asdict(removal) for node, removal in sorted(self.removed_here.items())},
             "kept": sorted(self.kept),
             "engine": self.engine,
+            "holds": self.holds,
             "weights": None if self.weights is None else self.weights.as_dict(),
             "face": None if self.face is None else asdict(self.face),
             "reference_video": None if self.reference_video is None else asdict(self.reference_video),
@@ -167,6 +169,7 @@ class ProjectContent:
             removed_here=door.removals(entries.pop("removed_here", {})),
             kept=frozenset(door.name_text(node) for node in door.listed(entries.pop("kept", []), door.MOST_NODES)),
             engine=door.name_text(entries.pop("engine", DEFAULT_ENGINE)),
+            holds=door.of_type(entries.pop("holds", False), bool),
             weights=door.optional(entries.pop("weights", None), SearchWeights.from_dict),
             face=door.optional(entries.pop("face", asdict(DEFAULT_FACE)), lambda e: FaceChoice(
                 door.name_text(e["name"]), door.optional(e.get("marker_file"), door.name_text))),

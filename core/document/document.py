@@ -62,6 +62,7 @@ class ProjectState:
     removed_here: Mapping[str, Removal] = field(default_factory=lambda: EMPTY)
     kept: frozenset[str] = frozenset()
     engine: str = DEFAULT_ENGINE
+    holds: bool = False
     weights: SearchWeights | None = None
     face: FaceChoice | None = DEFAULT_FACE
     reference_video: ReferenceVideo | None = None
@@ -84,6 +85,7 @@ class Document:
     removed_here : nodes that only this project removes; kept : nodes that it uses although the list removes them
     engine : which engine makes the motion, by its name in `core.synthesis.registry.ENGINES`; one that is not there, of
         a newer workstation, is kept
+    holds : whether engines that can keep dragged sounds at their middle
     weights : of the search; None for the database's own
     face : None for markers alone
     controls : the artist's layer over the control curves; polish : the layer over the motion that they make
@@ -107,6 +109,7 @@ class Document:
         self.removed_here: Mapping[str, Removal] = EMPTY
         self.kept: frozenset[str] = frozenset()
         self.engine = DEFAULT_ENGINE
+        self.holds = False
         self.weights: SearchWeights | None = None
         self.face = face
         self.reference_video: ReferenceVideo | None = None
@@ -191,7 +194,7 @@ class Document:
             known = self.node_names
             hard = {slot: node for slot, node in hard.items() if node in known}
             removed = frozenset(node for node in removed if node in known)
-        return SpeechInput(self.speech.transcript, self.modifiers, hard, removed, self.speech.audio)
+        return SpeechInput(self.speech.transcript, self.modifiers, hard, removed, self.speech.audio, self.holds)
 
     @property
     def path(self) -> MotionPath | None:

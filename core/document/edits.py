@@ -200,6 +200,16 @@ class SetEngine(FieldEdit):
         return cls.setting(document, f"Choose engine “{engine_kind(engine).title}”", Change.ENGINE, engine=engine)
 
 
+class SetHolds(FieldEdit):
+    """Keep dragged sounds at their middle, or let them fade; engines that cannot keep them do not mind."""
+
+    @classmethod
+    def on(cls, document: Document, holds: bool) -> SetHolds:
+        """Return the edit for ``document`` as it is now."""
+        label = "Hold long sounds" if holds else "Let long sounds fade"
+        return cls.setting(document, label, Change.ENGINE, holds=holds)
+
+
 class SetReferenceVideo(FieldEdit):
     """Show another film of the actor, none, or the same at another offset."""
 
@@ -246,7 +256,7 @@ class RestoreVersion(FieldEdit):
         "speech": Change.SPEECH | Change.ALIGNMENT, "database": Change.NODES | Change.CLUSTERS,
         "database_reference": Change.NODES | Change.CLUSTERS, "modifiers": Change.EMOTIONS, "pins": Change.CONSTRAINTS,
         "locks": Change.CONSTRAINTS, "removed_here": Change.CURATION, "kept": Change.CURATION,
-        "engine": Change.ENGINE, "weights": Change.WEIGHTS, "face": Change.FACE,
+        "engine": Change.ENGINE, "holds": Change.ENGINE, "weights": Change.WEIGHTS, "face": Change.FACE,
         "reference_video": Change.REFERENCE_VIDEO, "output": Change.OUTPUT, "polish": Change.POLISH,
         "controls": Change.CONTROLS,
     })  # fmt: skip

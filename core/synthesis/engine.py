@@ -22,6 +22,7 @@ class SpeechInput:
     pins : slot to public node name (hard); only the search knows them
     removed : public names of nodes that must not be used
     audio : the sound itself, for engines that listen to it
+    holds : keep dragged and sung sounds at their middle (`core.animeme.dominance.held`); only animemes know how
     """
 
     transcript: Transcript
@@ -29,6 +30,7 @@ class SpeechInput:
     pins: Mapping[int, str] = field(default_factory=dict)
     removed: frozenset[str] = frozenset()
     audio: Audio | None = None
+    holds: bool = False
 
 
 class EngineAnswer(Protocol):

@@ -45,6 +45,7 @@ class EngineKind:
     title, tip : what the window calls it, and what it does, in a sentence
     searches : whether its motion is a path of motion nodes, with costs, prices, pins and weights
     is_offered : whether the window offers it; plain rivals are there to be measured beside
+    can_hold : whether it can keep dragged sounds at their middle (`core.synthesis.engine.SpeechInput.holds`)
     """
 
     title: str
@@ -52,6 +53,7 @@ class EngineKind:
     make: MakesEngine
     searches: bool = False
     is_offered: bool = True
+    can_hold: bool = False
 
 
 def _search(name: str, title: str, tip: str) -> EngineKind:
@@ -61,8 +63,10 @@ def _search(name: str, title: str, tip: str) -> EngineKind:
     return EngineKind(title, tip, make, searches=True)
 
 
-def _rival(title: str, tip: str, make: Callable[[MotionDatabase, SearchKernels], MotionEngine]) -> EngineKind:
-    return EngineKind(title, tip, lambda database, kernels, *_: make(database, kernels), is_offered=False)
+def _rival(
+    title: str, tip: str, make: Callable[[MotionDatabase, SearchKernels], MotionEngine], can_hold: bool = False
+) -> EngineKind:
+    return EngineKind(title, tip, lambda database, kernels, *_: make(database, kernels), False, False, can_hold)
 
 
 ENGINES: Mapping[str, EngineKind] = MappingProxyType({
@@ -73,14 +77,14 @@ ENGINES: Mapping[str, EngineKind] = MappingProxyType({
     "random": _rival("Random nodes", "Any captured node of the right phone.",
                      lambda database, kernels: RandomNodes(make_engine(PRINTED, database, kernels))),
     "cohen-massaro": _rival("Cohen and Massaro", "Constant targets under normalised dominance functions.",
-                            lambda database, kernels: AnimemeEngine(database, COHEN_MASSARO_NORMALISED)),
+                            lambda database, kernels: AnimemeEngine(database, COHEN_MASSARO_NORMALISED), can_hold=True),
     "mmm": _rival("MMM", "Gaussians by phoneme, and the smoothest path through them.",
                   lambda database, kernels: MmmEngine(database)),
     "animeme-printed": _rival("Animemes, as printed", "Dominated animemes as the paper of 2012 prints them.",
-                              lambda database, kernels: AnimemeEngine(database, PRINTED_ANIMEMES)),
+                              lambda database, kernels: AnimemeEngine(database, PRINTED_ANIMEMES), can_hold=True),
     "animeme": EngineKind("Dominated animemes", "A shape over time for every phoneme, learnt from the captures, "
                           "and how far each rules its neighbours; smooth, and at once.",
-                          lambda database, *_: AnimemeEngine(database)),
+                          lambda database, *_: AnimemeEngine(database), can_hold=True),
     PRINTED: _search(PRINTED, "Search, as printed", "The constrained search as the paper of 2008 prints it: one path, "
                      "no context, straight silences."),
     "search-single": _search("search-single", "Search, best path alone", "The motion of the best path alone: every "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -188,6 +189,7 @@ def test_bad_requests_are_one_sentence_each(efase, tmp_path):
         [sentence.audio, *base, "--text", "both"],
         [sentence.audio, *base, "--backend", "abacus"],
         [sentence.audio, *base, "--engine", "magic"],
+        [sentence.audio, *base, "--hold"],
         [sentence.audio, *base, "--fps", "31"],
         [sentence.audio, *base, "--size", "big"],
         [sentence.audio, *base, "--style", "cubist", "-o", tmp_path / "x.avi"],
@@ -451,3 +453,11 @@ def test_our_own_fault_is_a_sentence_too(efase, monkeypatch, tmp_path):
 def test_every_verb_has_help(efase, verb):
     code, out, _ = efase(verb, "--help")
     assert code == 0 and verb in out
+
+
+def test_the_help_of_synth_names_every_engine(efase):
+    from core.synthesis.registry import ENGINES
+
+    code, out, _ = efase("synth", "--help")
+    named = set(re.findall("[a-z-]+", re.sub(r"-\s*\n\s+", "-", out)))
+    assert code == 0 and set(ENGINES) <= named

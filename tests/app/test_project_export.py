@@ -8,12 +8,13 @@ import pytest
 from core.document.content import ProjectContent
 from core.document.document import Document
 from core.document.edits import SetSpeech
-from core.document.parts import DatabaseReference
+from core.document.parts import DatabaseReference, Speech
 from core.document.project_file import ProjectFile, read_project
 from core.motion.database import open_database
 from core.motion.motion_files import read_motion
 from core.rig.control_layer import laid_over
 from core.search.compute import NumpyKernels
+from core.speech.transcript import PhonemeUtterance, Transcript
 from core.synthesis.control_edits import NO_CONTROL_EDITS, ControlEdits, ControlKey
 from core.synthesis.engine import SpeechInput
 from core.synthesis.polish import NO_POLISH
@@ -37,12 +38,15 @@ def project(tmp_path):
         database: DatabaseReference | None = None,
         engine: str = "search",
         controls: ControlEdits = NO_CONTROL_EDITS,
+        holds: bool = False,
+        speech: Speech | None = None,
     ):
         made.append(tmp_path / f"project{len(made)}.efase")
         path, document = made[-1], Document()
         if speaks:
-            document.apply(SetSpeech.on(document, made_speech(1)))
+            document.apply(SetSpeech.on(document, speech or made_speech(1)))
         document.database_reference, document.engine, document.controls = database, engine, controls
+        document.holds = holds
         file = ProjectFile.create(path)
         file.save(ProjectContent.of(document), None if document.speech is None else document.speech.audio)
         file.close()
@@ -92,6 +96,29 @@ def test_edits_of_the_control_curves_are_in_what_is_exported(efase, project, tmp
     shown = laid_over(motion, database, edits, NO_POLISH).at_rate(rate_hz, len(positions))
     assert np.allclose(positions, shown.positions, atol=1e-3)
     assert not np.allclose(positions, motion.at_rate(rate_hz, len(positions)).positions, atol=1.0)
+
+
+def test_long_sounds_are_held_in_what_is_exported(efase, project, tmp_path, database_path, monkeypatch):
+    monkeypatch.setenv("EFASE_CACHE_DIR", str(tmp_path / "cache"))
+    database, made = open_database(database_path), made_speech(1)
+    spoken = [PhonemeUtterance(*said) for said in (("m", 0.0, 0.1), ("aa", 0.1, 0.8), ("pau", 0.8, 0.9))]
+    transcript = Transcript.covering(spoken, (), 0.9)
+    written = {}
+    for holds in (False, True):
+        path = project(
+            True,
+            DatabaseReference("tiny", "0", str(database_path)),
+            "animeme",
+            holds=holds,
+            speech=Speech(made.audio, transcript, ""),
+        )
+        assert efase("export", path, "-o", tmp_path / "a.csv")[0] == 0
+        written[holds], _, rate_hz = read_motion(tmp_path / "a.csv")
+        motion = (
+            make_engine("animeme", database, NumpyKernels()).synthesise(SpeechInput(transcript, holds=holds)).motion
+        )
+        assert np.allclose(written[holds], motion.at_rate(rate_hz, len(written[holds])).positions, atol=1e-3)
+    assert not np.allclose(written[True], written[False], atol=0.1)
 
 
 def test_a_file_alone_opens_the_window(efase, project, monkeypatch):

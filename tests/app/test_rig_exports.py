@@ -215,6 +215,25 @@ def test_what_a_model_cannot_do_is_one_sentence(efase, artists_model, speech_pat
     assert sorted(tmp_path.iterdir()) == before
 
 
+def test_long_sounds_are_held_when_asked(efase, artists_model, speech_path, tmp_path):
+    """The artist's sounds last 0.2 s; one of 1 s keeps its shape in the middle."""
+    (tmp_path / "long.lab").write_text("0 0.1 pau\n0.1 0.2 m\n0.2 0.8 aa\n0.8 0.9 pau\n")
+    wander = {}
+    for words in ((), ("--hold",)):
+        code, _, err = efase("lipsync", speech_path, "--phones", tmp_path / "long.lab", "--model", artists_model,
+                             "-o", tmp_path / "a.json", "--fps", "60", *words)  # fmt: skip
+        assert code == 0, err
+        wander[words] = np.ptp(read_curves_json(tmp_path / "a.json").column("jawOpen")[24:36])
+    assert wander["--hold",] < 1e-6 < wander[()]
+
+
+def test_a_face_without_shapes_is_refused_before_any_synthesis(efase, speech_path, tmp_path, monkeypatch):
+    monkeypatch.setattr("app.synthesis.made_ready", lambda *_: pytest.fail("it was not looked at first"))
+    (tmp_path / "bare.obj").write_text("v 0 0 0\nv 100 0 0\nv 0 100 0\nf 1 2 3\n")
+    code, _, err = efase("synth", speech_path, "--face", tmp_path / "bare.obj", "-o", tmp_path / "a.glb")
+    assert code == 2 and "has no shapes" in err and not (tmp_path / "a.glb").exists()
+
+
 def test_a_rig_is_posed_by_names_for_an_artist_to_go_on_from(efase, face, tiny_corpus, tmp_path):
     build_database(replace(tiny_corpus(), landmarks=LANDMARKS), tmp_path / "a.h5", BuildSettings(rate_hz=60.0))
     for name, controls in (("arkit", ("JawOpen", "other")), ("strange", ("a", "b"))):

@@ -7,7 +7,7 @@ from PySide6.QtCore import Qt
 from app import texts
 from app.authoring import Authoring
 from app.panels.control.section import Section, combo_box
-from app.panels.pane import label
+from app.panels.pane import label, toggle
 from app.panels.polish import PolishPage
 from app.panels.weights import WeightsPage
 from core.document.change import Change
@@ -15,7 +15,7 @@ from core.synthesis.registry import ENGINES
 
 
 class EngineSection(Section):
-    """Chooses among the engines that are offered; one without a path has no weights."""
+    """Chooses among the engines that are offered; one without a path has no weights, and only animemes hold."""
 
     def __init__(self, authoring: Authoring) -> None:
         super().__init__(texts.ENGINE)
@@ -27,10 +27,11 @@ class EngineSection(Section):
                 self._add(name, kind.title, kind.tip)
         self._n_offered = self.chosen.count()
         self.chosen.activated.connect(lambda row: authoring.set_engine(self.chosen.itemData(row)))
+        self.hold = toggle(texts.HOLD, texts.HOLD_TIP, authoring.set_holds)
         self.facts = label(texts.BACKEND_WAITING)
         self.facts.setWordWrap(True)
         self.weights, self.polish = WeightsPage(authoring), PolishPage(authoring)
-        for widget in (self.chosen, self.facts, self.weights, self.polish):
+        for widget in (self.chosen, self.hold, self.facts, self.weights, self.polish):
             self.column.addWidget(widget)
         self._backend = texts.BACKEND_WAITING, ""
         authoring.document.changed.connect(self.on_document_changed)
@@ -38,20 +39,22 @@ class EngineSection(Section):
         self.on_document_changed(Change.ENGINE, None)
 
     def on_document_changed(self, change: Change, _origin: object) -> None:
-        """Show another engine."""
+        """Show another engine, and whether it holds."""
         if not change & Change.ENGINE:
             return
         document = self._authoring.document
+        kind = ENGINES.get(document.engine)
         while self.chosen.count() > self._n_offered:
             self.chosen.removeItem(self._n_offered)
         if self.chosen.findData(document.engine) < 0:
-            kind = ENGINES.get(document.engine)
             self._add(
                 document.engine, document.engine if kind is None else kind.title, "" if kind is None else kind.tip
             )
         row = self.chosen.findData(document.engine)
         self.chosen.setCurrentIndex(row)
         self.chosen.setToolTip(self.chosen.itemData(row, Qt.ItemDataRole.ToolTipRole))
+        self.hold.setVisible(kind is not None and kind.can_hold)
+        self.hold.setChecked(document.holds)
         self.weights.setVisible(not document.has_no_path)
         self._show_facts()
 

@@ -71,6 +71,7 @@ class _Request:
     model: AnimemeModel | None
     transcript: Transcript
     modifiers: tuple[EmotionModifier, ...]
+    holds: bool
 
 
 class ShownCurves(QObject):
@@ -114,7 +115,8 @@ class ShownCurves(QObject):
         elif answer is not self._answer:
             self._answer = answer
             request = _Request(answer.motion, document.database, getattr(answer, "model", None),
-                               document.speech.transcript, document.modifiers)  # fmt: skip
+                               document.speech.transcript, document.modifiers,
+                               getattr(answer, "holds", False))  # fmt: skip
             jobs.start("controls", texts.FINDING, request, _found, self._on_found, self._on_failed)
 
     def _on_found(self, curves: FoundCurves) -> None:
@@ -133,7 +135,9 @@ def _found(request: _Request, progress: Progress) -> FoundCurves:
     progress.step(0.8)
     ruling = None
     if request.model is not None:
-        ruling = ruling_of(request.model, request.transcript, request.modifiers, found.rate_hz, len(found))
+        ruling = ruling_of(
+            request.model, request.transcript, request.modifiers, found.rate_hz, len(found), request.holds
+        )
         alone = MarkerMotion(request.database.pca.positions(ruling.asked), found.rate_hz, request.motion.markers)
         ruling = replace(ruling, asked=basis.curves(alone, request.database).values)
     return FoundCurves(request.transcript, basis, found, ruling, ControlEdits())

@@ -112,6 +112,22 @@ def test_learning_animemes_can_be_given_up_and_taken_up_again(animated, qtbot, m
     assert np.array_equal(document.motion.positions, made_by(document, "animeme"))
 
 
+def test_animemes_hold_long_sounds_by_a_switch_that_undoes_and_that_no_search_has(animated, qtbot):
+    window, document, section = animated, animated.authoring.document, animated.control.engine
+    assert not section.hold.isVisibleTo(window)
+    choose(window, qtbot, "animeme")
+    assert section.hold.isVisibleTo(window) and not section.hold.isChecked()
+    before, n_before = document.answer, window.authoring.undo_stack.index()
+    section.hold.setFocus()
+    QTest.keyClick(section.hold, Qt.Key.Key_Space)
+    qtbot.waitUntil(lambda: document.answer is not before, timeout=WAIT_MS)
+    assert document.holds and document.answer.holds
+    held = document.answer
+    window.authoring.undo_stack.setIndex(n_before)
+    qtbot.waitUntil(lambda: document.answer is not held, timeout=WAIT_MS)
+    assert not document.holds and not document.answer.holds and not section.hold.isChecked()
+
+
 def test_an_engine_of_a_newer_workstation_is_kept_and_told(animated, qtbot):
     authoring = animated.authoring
     state = replace(authoring.document.state(), engine="dream")

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from core.animeme import engine as engines
+from core.animeme.dragging import dragged
 from core.animeme.engine import AnimemeEngine, component_animemes
 from core.animeme.form import COHEN_MASSARO
 from core.animeme.material import face_controls, key_shape_controls, mouth_measures
@@ -72,6 +73,18 @@ def test_anger_opens_wider_the_stronger_it_is(mouth_database):
         gaps.append(np.ptp(motion.positions[:, 3, 1] - motion.positions[:, 4, 1]))
     assert gaps[0] < gaps[1] < gaps[2]
     assert gaps[2] > 1.2 * gaps[0]
+
+
+def test_a_dragged_sound_keeps_its_shape_where_the_question_says_so(mouth_database):
+    engine = AnimemeEngine(mouth_database)
+    sung = dragged(mouth_database.sentences[0].transcript, slot=2, duration_s=2.0)
+    start_s, wander = sung.phonemes[2].start_s, {}
+    for holds in (False, True):
+        answer = engine.synthesise(SpeechInput(sung, holds=holds))
+        middle = slice(*(round((start_s + t_s) * answer.motion.rate_hz) for t_s in (0.5, 1.5)))
+        wander[holds] = np.ptp(answer.motion.positions[middle], axis=0).max()
+        assert answer.holds == holds
+    assert wander[True] < 0.1 * wander[False]
 
 
 def test_animemes_of_other_controls_are_refused(mouth_database, known_model):

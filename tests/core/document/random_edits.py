@@ -24,6 +24,7 @@ from core.document.edits import (
     SetEmotion,
     SetEngine,
     SetFace,
+    SetHolds,
     SetOutput,
     SetPolish,
     SetReferenceVideo,
@@ -104,6 +105,7 @@ def random_edit(document: Document, chance: random.Random) -> Edit | None:
             document, "Weigh", Change.WEIGHTS, weights=chance.choice((None, SearchWeights(pnt=chance.uniform(1, 5e4))))
         ),
         lambda: SetEngine.on(document, chance.choice(tuple(ENGINES))),
+        lambda: SetHolds.on(document, chance.random() < 0.5),
         lambda: FieldEdit.setting(
             document, "Lock", Change.CONSTRAINTS, locks=MappingProxyType({**document.locks, slot: node})
         ),

@@ -21,6 +21,7 @@ from core.document.edits import (
     SetEmotion,
     SetEngine,
     SetFace,
+    SetHolds,
     SetSpeech,
     UnlockSlots,
 )
@@ -242,6 +243,15 @@ def test_another_engine_is_an_edit_and_one_that_there_is_not_is_told(document):
     assert document.engine == "search"
     with pytest.raises(UserFacingError, match="no engine 'magic'"):
         SetEngine.on(document, "magic")
+
+
+def test_holding_long_sounds_is_an_edit_that_reaches_the_question_to_the_engine(document):
+    edit = SetHolds.on(document, True)
+    assert edit.do(document) == Change.ENGINE and document.speech_input().holds
+    held = ProjectContent(holds=True)
+    assert ProjectContent.from_json(held.to_json()).state(None, None).holds and not ProjectContent.from_json("{}").holds
+    edit.undo(document)
+    assert not document.speech_input().holds
 
 
 def test_a_motion_without_a_path_cannot_be_locked(document):
