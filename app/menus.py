@@ -10,7 +10,7 @@ from app import texts
 from app.actions import frame_rate_options
 from app.project_menu import ProjectMenu
 from app.settings import window_settings
-from app.texts import curves, importing
+from app.texts import curves, importing, poses
 from core.speech.emotion import EMOTIONS
 
 if TYPE_CHECKING:
@@ -82,6 +82,8 @@ def _motion(window: MainWindow) -> None:
         authoring.set_frame_rate,
     )
     add(motion, "start_frame", texts.ACTION_START_FRAME, "", window.ask_start_frame)
+    motion.addSeparator()
+    add(motion, "key_poses", poses.ACTION, "", window.key_poses.open_now)
 
 
 def _map(window: MainWindow) -> None:

@@ -21,6 +21,7 @@ from app.panels.importing.window import ImportWindow
 from app.panels.isomap import IsomapPane
 from app.panels.lexicon import LexiconDialog
 from app.panels.motion import MotionPane
+from app.panels.poses.window import KeyPosesWindow
 from app.panels.preview import PreviewPane
 from app.panels.status import StatusLine
 from app.panels.timeline.bar import TimelinePane
@@ -58,6 +59,7 @@ class MainWindow(AskingWindow):
         self.lexicon = LexiconDialog(authoring.jobs, self)
         self.export_dialog = ExportDialog(authoring, self.settings, self)
         self.importing = ImportWindow(authoring, self)
+        self.key_poses = KeyPosesWindow(authoring, self)
         make_menus(self)
         self._join()
         self._restore_layout()
@@ -243,6 +245,7 @@ class MainWindow(AskingWindow):
         self._save_layout()
         self.keeper.close()
         self.importing.shut_down()
+        self.key_poses.shut_down()
         self.authoring.shut_down()
         for pane in (self.motion, self.preview):
             pane.face_view.release()

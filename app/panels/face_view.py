@@ -150,7 +150,9 @@ class FaceView(QOpenGLWidget):
         if self._stale["ghosts"] and self._markers is not None:
             self._upload_ghosts(renderer)
             self._stale["ghosts"] = False
-        if self._stale["pose"] and self._markers is not None:
+        # a rig is posed by its controls, without markers
+        poseable = self._markers is not None or (self.shows_mesh and self._displacements is not None)
+        if self._stale["pose"] and poseable:
             displacements = self._displacements
             if displacements is None:
                 displacements = np.zeros((len(self._markers), 3), np.float32)

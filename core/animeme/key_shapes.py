@@ -7,12 +7,15 @@ import warnings
 import numpy as np
 
 from core.errors import UserFacingError
+from core.progress import SILENT, Progress
 
 _MOST_FRAMES = 600
 _TRIALS = 12
 
 
-def key_lip_shapes(lip_displacements: np.ndarray, n_shapes: int = 7, seed: int = 2008) -> np.ndarray:
+def key_lip_shapes(
+    lip_displacements: np.ndarray, n_shapes: int = 7, seed: int = 2008, progress: Progress = SILENT
+) -> np.ndarray:
     """Choose about ``n_shapes`` frames by affinity propagation (Frey and Dueck 2007).
 
     Affinity propagation finds the number of clusters from a preference; the preference is bisected until the number is
@@ -32,7 +35,8 @@ def key_lip_shapes(lip_displacements: np.ndarray, n_shapes: int = 7, seed: int =
     similar = -np.square(packed[chosen, None] - packed[None, chosen]).sum(axis=2)
     low, high = 200.0 * similar.min(), 0.0
     best: np.ndarray | None = None
-    for _ in range(_TRIALS):
+    for trial in range(_TRIALS):
+        progress.step(trial / _TRIALS, "choosing key lip shapes")
         middle = (low + high) / 2 if high else low / 8
         exemplars = _exemplars(similar, middle, seed)
         if best is None or abs(len(exemplars) - n_shapes) < abs(len(best) - n_shapes):

@@ -17,6 +17,7 @@ from core.face.face import Face
 from core.media.swap_in import swapped_in
 from core.motion.database import MotionDatabase
 from core.motion.marker_set import MarkerSet
+from core.progress import SILENT, Progress
 from core.rig.control_names import control_mixing
 from core.rig.rig import Rig
 from core.speech.text_file import read_text
@@ -73,7 +74,9 @@ class KeyPoses:
             beside.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8", newline="\n")
 
 
-def captured_keys(database: MotionDatabase, n_keys: int = 7, seed: int = 2008) -> tuple[np.ndarray, np.ndarray]:
+def captured_keys(
+    database: MotionDatabase, n_keys: int = 7, seed: int = 2008, progress: Progress = SILENT
+) -> tuple[np.ndarray, np.ndarray]:
     """Choose key lip shapes among the captured frames; see `core.animeme.key_shapes.key_lip_shapes`.
 
     returns : rows of the lip markers, int, shape (K,), and the shapes, float64, shape (N, K, 3), mm from rest
@@ -85,7 +88,7 @@ def captured_keys(database: MotionDatabase, n_keys: int = 7, seed: int = 2008) -
                               "Name them in the group lips of markers.csv and build it anew.")  # fmt: skip
     step = max(1, len(database.frames) // _MOST_FRAMES)
     moved = database.pca.positions(database.frames[::step].astype(float))[:, lips] - database.markers.rest[lips]
-    return lips, moved[key_lip_shapes(moved, n_keys, seed)]
+    return lips, moved[key_lip_shapes(moved, n_keys, seed, progress)]
 
 
 def default_poses(face: Face, markers: MarkerSet, lips: np.ndarray, lips_mm: np.ndarray) -> KeyPoses:

@@ -1,0 +1,1 @@
+"""The window in which an artist poses a character for each key lip shape."""
