@@ -34,7 +34,8 @@ def cores(n_jobs: int = -1) -> Workers:
         jobs = [delayed(function)(*arguments) for function, arguments in calls]
         answers = Parallel(n_jobs=n_jobs, return_as="generator_unordered", batch_size=1, pre_dispatch="all")(jobs)
         try:
-            for answer in answers:  # `yield from` would close joblib's generator before our own ends
+            # `yield from` would close joblib's generator outside of what catches its warning
+            for answer in answers:  # noqa: UP028
                 yield answer
         finally:
             with warnings.catch_warnings():  # joblib tells that work was left, which is what a cancel asks for
