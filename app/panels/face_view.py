@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from app.face_light import face_light
 from app.panels.focus_ring import FocusRing
 from app.panels.marker_links import marker_links
 from app.pictures import FaceRig
+from core.face.face import Face
 from core.motion.marker_set import MarkerSet
 from gpu.gl.camera import Camera, portrait_bounds
 from gpu.gl.face import FaceRenderer, Style
@@ -33,10 +35,14 @@ _STEP_ANGLE = 120.0  # eighths of a degree in one notch of a wheel
 
 
 class FaceView(QOpenGLWidget):
-    """Shows one pose of a marker set, on a face or bare. GL objects live in the widget's own context."""
+    """Shows one pose of a marker set, on a face or bare. GL objects live in the widget's own context.
 
-    def __init__(self) -> None:
+    bounds : the box of a face that is in view from the front, see `gpu.gl.camera.portrait_bounds`
+    """
+
+    def __init__(self, bounds: Callable[[Face], np.ndarray] = portrait_bounds) -> None:
         super().__init__()
+        self._bounds = bounds
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setStatusTip(texts.ORBIT_TIP)
         self.focus_ring = FocusRing(self)
@@ -69,7 +75,7 @@ class FaceView(QOpenGLWidget):
         """Show another face, or none."""
         self._rig = rig
         if rig is not None:
-            self._set_camera(True, portrait_bounds(rig.face))
+            self._set_camera(True, self._bounds(rig.face))
         self._renew("face")
 
     def set_style(self, style: Style) -> None:

@@ -12,6 +12,7 @@ from app.texts import poses as texts
 from app.theme import STEP
 
 _STEPS = 100
+_SEEN = 0.5 / _STEPS
 _NAME_PX, _VALUE_PX = 168, 32
 
 
@@ -92,7 +93,7 @@ class ControlSliders(QWidget):
         self._shown = np.zeros(len(self.sliders)) if values is None else np.asarray(values)
         self._area.setEnabled(values is not None)
         for (name, slider), value in zip(self.sliders.items(), self._shown):
-            self._values[name].setText(f"{value:.2f}" if value else "–")
+            self._values[name].setText(f"{value:.2f}" if value >= _SEEN else "–")
             slider.blockSignals(True)
             slider.setValue(round(_STEPS * value))
             slider.blockSignals(False)
@@ -102,7 +103,7 @@ class ControlSliders(QWidget):
     def _filter(self) -> None:
         words = self.search.text().lower().split()
         for (name, row), value in zip(self._rows.items(), self._shown):
-            fits = all(word in name.lower() for word in words) and (not self.used.isChecked() or bool(value))
+            fits = all(word in name.lower() for word in words) and (not self.used.isChecked() or bool(value >= _SEEN))
             for widget in row:
                 widget.setVisible(fits)
 

@@ -11,17 +11,32 @@ from app.panels.poses.posing import PosedFace
 from app.pictures import FaceRig
 from app.texts import poses as texts
 from core.face.characters import CHARACTERS
+from core.face.face import Face
 from core.motion.marker_set import MarkerSet
+from gpu.gl.camera import portrait_bounds
 from gpu.gl.face import Style
 
 _RIG_FILE = ""
+
+
+def mouth_bounds(face: Face) -> np.ndarray:
+    """Return the box, shape (2, 3), mm, from the bridge of the nose to the chin; the portrait's for unknown faces."""
+    portrait = portrait_bounds(face)
+    if any(name not in face.landmarks for name in ("nose_bridge", "chin", "outer_eye_left", "outer_eye_right")):
+        return portrait
+    bridge, chin = (face.positions[face.landmarks[name]] for name in ("nose_bridge", "chin"))
+    margin, middle = 0.2 * face.outer_eye_distance, (portrait[0, 0] + portrait[1, 0]) / 2
+    low, high = portrait.copy()
+    low[:2] = middle - 3 * margin, chin[1] - margin
+    high[:2] = middle + 3 * margin, bridge[1]
+    return np.stack([low, high])
 
 
 class CapturedPane(Pane):
     """A key lip shape as markers, or on the face that they move in the main window."""
 
     def __init__(self) -> None:
-        self.view = FaceView()
+        self.view = FaceView(mouth_bounds)
         super().__init__(texts.CAPTURED, self.view, texts.NONE_YET)
         self.style = Choice([texts.FACE, texts.DOTS])
         self.style.group.idClicked.connect(lambda _: self._dress())
@@ -61,7 +76,7 @@ class PosedPane(Pane):
     """
 
     def __init__(self) -> None:
-        self.view = FaceView()
+        self.view = FaceView(mouth_bounds)
         super().__init__(texts.POSED, self.view, texts.OPENING_RIG + "…")
         self.characters = QComboBox(toolTip=texts.CHARACTER_TIP)
         self.characters.setProperty("role", "small")

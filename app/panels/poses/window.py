@@ -83,7 +83,9 @@ class KeyPosesWindow(QWidget):
             QAbstractItemView.EditTrigger.DoubleClicked | QAbstractItemView.EditTrigger.EditKeyPressed
         )
         self.count = QSpinBox(minimum=_FEWEST, maximum=_MOST, value=_USUAL, toolTip=texts.COUNT_TIP)
-        self.count.setButtonSymbols(QSpinBox.ButtonSymbols.NoButtons)
+        self.count.setFixedWidth(6 * STEP)
+        # the platform's arrows do not show on our ground
+        self.count.setStyleSheet("QSpinBox::up-button, QSpinBox::down-button { width: 0; border: none; }")
         self.find_button = QPushButton(texts.FIND, toolTip=texts.FIND_TIP)
         self.add_button = QPushButton(texts.ADD, toolTip=texts.ADD_TIP)
         self.remove_button = QPushButton(texts.REMOVE, toolTip=texts.REMOVE_TIP)
