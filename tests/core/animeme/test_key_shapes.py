@@ -27,3 +27,12 @@ def test_the_same_seed_chooses_the_same_frames_in_order():
 def test_lips_that_do_not_move_are_told():
     with pytest.raises(UserFacingError, match="do not move enough"):
         key_lip_shapes(np.zeros((50, 4, 3)), 5)
+
+
+def test_lips_that_move_along_a_line_give_a_few_shapes_too():
+    along = np.sin(np.linspace(0.0, 60.0, 672)) * 4 + 4
+    lips = np.zeros((672, 2, 3))
+    lips[:, 1, 1] = -along
+    frames = key_lip_shapes(lips, 3)
+    assert 2 <= len(frames) <= 6
+    assert np.ptp(along[frames]) > 3
