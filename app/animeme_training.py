@@ -6,13 +6,13 @@ import hashlib
 import tempfile
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from app.demo import open_named
-from core.animeme.artist_curves import read_artist_examples
+from core.animeme.artist_curves import CurveReading, read_artist_examples
 from core.animeme.examples import Example
 from core.animeme.form import FORMS
 from core.animeme.material import component_controls, database_examples, face_controls, key_shape_controls
@@ -28,12 +28,16 @@ RIGS = ("arkit", "lips", "components")
 
 @dataclass(frozen=True)
 class TrainingJob:
-    """Everything that `efase train animeme` was told; see its help."""
+    """Everything that `efase train animeme` was told; see its help.
+
+    reading : of ``curves``
+    """
 
     output: Path
     database: Path | None = None
     corpus: Path | None = None
     curves: tuple[Path, ...] = ()
+    reading: CurveReading = field(default_factory=CurveReading)
     rig: str = "arkit"
     form: str = "best"
     n_sentences: int | None = None
@@ -49,9 +53,10 @@ def run(job: TrainingJob, progress: Progress = SILENT) -> dict[str, object]:
         raise UserFacingError("Curves and captures cannot be learnt from at once.", "Train twice.")
     check_target(job.output)
     began = time.perf_counter()
-    rest = None
+    rest, notes = None, []
     if job.curves:
-        examples = read_artist_examples(job.curves)[: job.n_sentences]
+        examples, notes = read_artist_examples(job.curves, job.reading, progress.part(0.0, 0.5))
+        examples = examples[: job.n_sentences]
     elif job.corpus is not None:
         from core.motion.build import build_database
         from core.motion.readers.corpus_folder import read_corpus
@@ -70,7 +75,7 @@ def run(job: TrainingJob, progress: Progress = SILENT) -> dict[str, object]:
     )  # fmt: skip
     trained.model.save(job.output)
     progress.step(1.0, "trained")
-    return _answer(job, examples, trained, mapped_s, time.perf_counter() - began)
+    return _answer(job, examples, trained, mapped_s, time.perf_counter() - began) | {"warnings": notes}
 
 
 def in_words(answer: dict) -> str:

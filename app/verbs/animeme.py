@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from app.terminal import print_json, progress_bar
-from app.verbs.options import Database, Json
+from app.terminal import print_json, progress_bar, warn
+from app.verbs.options import AudioDir, Database, Json, Lexicon, Rate, ShapeNames, ShapeSheet
 
 train = typer.Typer(help="Learn a model of how someone speaks.", rich_markup_mode=None)
 
@@ -27,10 +27,15 @@ def train_animeme(
         list[Path] | None,
         typer.Option(
             "--controls",
-            help="An artist's curves, .csv or .json, each beside a transcript of its name, "
-            ".TextGrid or .lab; a folder for all in it; repeat for more.",
+            help="An artist's curves, .csv, .json, .npy or .npz; beside each, of its name, a transcript (.TextGrid, "
+            ".lab) or a sound, with its text (.txt) or to be recognised; a folder for all in it; repeat for more.",
         ),
     ] = None,
+    shape_names: ShapeNames = None,
+    shape_sheet: ShapeSheet = None,
+    rate: Rate = None,
+    audio_dir: AudioDir = None,
+    lexicon: Lexicon = None,
     rig: Annotated[str, typer.Option(help="Controls that captures become: arkit, lips or components.")] = "arkit",
     form: Annotated[str, typer.Option(help="best, printed, cohen-massaro or cohen-massaro-normalised.")] = "best",
     sentences: Annotated[int | None, typer.Option(min=1, help="Learn from the first so many; all when absent.")] = None,
@@ -38,9 +43,12 @@ def train_animeme(
 ) -> None:
     """Learn dominated animemes; a run that was cut goes on where it was."""
     from app.animeme_training import TrainingJob, in_words, run
+    from core.animeme.artist_curves import CurveReading
 
     with progress_bar("train") as progress:
-        answer = run(TrainingJob(output, db, corpus, tuple(curves or ()), rig, form, sentences), progress)
+        reading = CurveReading(shape_names, shape_sheet, rate, audio_dir, lexicon)
+        answer = run(TrainingJob(output, db, corpus, tuple(curves or ()), reading, rig, form, sentences), progress)
+    warn(answer["warnings"])
     if json:
         print_json(answer)
     else:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from app.terminal import print_json, progress_bar, warn
-from app.verbs.options import Json, Lexicon
+from app.verbs.options import AudioDir, Json, Lexicon, Rate, ShapeNames, ShapeSheet
 from core.errors import UserFacingError
 
 _PICTURE = re.compile("([0-9]{1,5})x([0-9]{1,5})")
@@ -31,15 +31,15 @@ def import_captures(
         Path | None, typer.Option(metavar="DB", help="Fill gaps of short takes by this database of the same actor.")
     ] = None,
     emotion: Annotated[str | None, typer.Option(help="Of all sentences; read from file names when absent.")] = None,
-    audio_dir: Annotated[Path | None, typer.Option(help="Folder of sounds and texts named like the takes.")] = None,
+    audio_dir: AudioDir = None,
     offsets: Annotated[str | None, typer.Option(help="Take measured lateness out: keep, session or each.")] = None,
     longest_gap: Annotated[float | None, typer.Option(metavar="S", help="Longer gaps stay open; 0.5 s.")] = None,
     faults: Annotated[bool | None, typer.Option("--faults/--no-faults", help="Mend spikes and swaps.")] = None,
-    rate: Annotated[float | None, typer.Option(help="Frames a second of files that do not tell.")] = None,
+    rate: Rate = None,
     unit: Annotated[str | None, typer.Option(help="mm, cm, m or in, for files that do not tell.")] = None,
     picture: Annotated[str | None, typer.Option(help="WIDTHxHEIGHT in pixels, for landmarks in fractions.")] = None,
-    shape_names: Annotated[Path | None, typer.Option(help="Names of the weights of blendshape arrays.")] = None,
-    shape_sheet: Annotated[Path | None, typer.Option(help="Table from such names to ARKit's (.xlsx, .csv).")] = None,
+    shape_names: ShapeNames = None,
+    shape_sheet: ShapeSheet = None,
     lexicon: Lexicon = None,
     dims: Annotated[int | None, typer.Option(min=2, max=300, help="PCA dimensions.")] = None,
     hold_out: Annotated[str | None, typer.Option(help="Hold out by sentences, letters or digits.")] = None,

@@ -21,6 +21,10 @@ Database = Annotated[Path | None, typer.Option("--db", help="Motion database; th
 Lexicon = Annotated[Path | None, typer.Option(help="Pronunciations of names and coined words, `word phone phone …`.")]
 Strict = Annotated[bool, typer.Option(help="Refuse phones that are not in the set, instead of taking the nearest.")]
 Language = Annotated[str | None, typer.Option(help="The text's language, as espeak-ng names it: de, fr-fr, ...")]
+AudioDir = Annotated[Path | None, typer.Option(help="Folder of sounds and texts named like the takes.")]
+Rate = Annotated[float | None, typer.Option(help="Frames a second of files that do not tell.")]
+ShapeNames = Annotated[Path | None, typer.Option(help="Names of the weights of blendshape arrays.")]
+ShapeSheet = Annotated[Path | None, typer.Option(help="Table from such names to ARKit's (.xlsx, .csv).")]
 Hold = Annotated[bool, typer.Option("--hold", help="Animemes: dragged and sung sounds keep their shape.")]
 PhoneTable = Annotated[
     str | None, typer.Option("--phone-table", help="What names in the phone file stand for: pinyin, or a file.")

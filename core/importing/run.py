@@ -14,7 +14,7 @@ from core.errors import UserFacingError
 from core.folders import cache_dir
 from core.importing.plan import ImportPlan, SentencePlan, check_plan
 from core.importing.report import KEY, ImportReport, SentenceReport
-from core.importing.sentence_work import SILENCE, failed, work_on
+from core.importing.sentence_work import failed, work_on
 from core.importing.shifting import shifted
 from core.importing.sound_offset import OffsetEstimate, pooled_offset
 from core.importing.work_cache import KeptSentence, cache_path, keep, kept
@@ -25,6 +25,7 @@ from core.motion.database import MotionDatabase
 from core.motion.head_space import LONGEST_GAP_S, in_head_space
 from core.motion.recording import Recording
 from core.progress import SILENT, Progress
+from core.speech.placing import SILENCE
 from core.synthesis.marker_motion import MarkerMotion
 
 # A measured offset that is less sure than this is told, and not taken out.

@@ -19,9 +19,9 @@ from core.importing.takes import limits_for, read_take
 from core.media.audio import Audio, load_audio
 from core.motion.motion_track import MotionTrack
 from core.motion.recording import Recording
+from core.speech.placing import ALIGNED, RECOGNISED, SILENCE, placed_speech
 from core.speech.transcript import Transcript
 
-GIVEN, ALIGNED, RECOGNISED, SILENCE = "given", "aligned", "recognised", "silence"
 # A take as long as this knows its own poses better than another's database does.
 _OWN_POSES_S = 10.0
 
@@ -53,7 +53,7 @@ def work_on(plan: ImportPlan, sentence: SentencePlan) -> WorkedSentence:
     names, positions = picked(track, plan.markers, sentence)
     audio = load_audio(Path(sentence.audio)) if sentence.audio else None
     duration_s = audio.duration_s if audio is not None else len(positions) / track.rate_hz
-    transcript, text, alignment = _speech(plan, sentence, audio, duration_s)
+    transcript, text, alignment = placed_speech(audio, duration_s, sentence.transcript, sentence.text, plan.lexicon)
     rigid = [names.index(name) for name in plan.rigid if name in names]
     limits = limits_for(sentence, plan.mending)
     mended = mend(positions, names, track.rate_hz, limits, rigid, model_of(plan.like, names, track))
@@ -94,27 +94,6 @@ def picked(
     if lacking:
         raise UserFacingError(f"'{sentence.motion}' has no marker '{lacking[0]}', which the import keeps.")
     return tuple(markers.values()), np.asarray(track.positions)[:, [column[name] for name in markers]]
-
-
-def _speech(
-    plan: ImportPlan, sentence: SentencePlan, audio: Audio | None, duration_s: float
-) -> tuple[Transcript, str, str]:
-    from core.speech.aligner import align, recognise
-    from core.speech.lexicon import read_lexicon
-    from core.speech.transcript_files import read_transcript
-
-    if sentence.transcript is not None:
-        transcript = read_transcript(sentence.transcript, duration_s)
-        return transcript, sentence.text or " ".join(w.word for w in transcript.words if w.word), GIVEN
-    if audio is None:
-        said = " ".join(sentence.text.split())
-        notes = [f"There is no sound to place '{said[:60]}' in: taken as silence."] if said else []
-        return Transcript.covering([], [], duration_s, notes), "", SILENCE
-    lexicon = None if plan.lexicon is None else read_lexicon(Path(plan.lexicon))
-    if sentence.text.strip():
-        return align(audio, sentence.text, lexicon), sentence.text, ALIGNED
-    text, transcript = recognise(audio, lexicon)
-    return transcript, text, RECOGNISED if text else SILENCE
 
 
 def _confidence(audio: Audio | None, transcript: Transcript, alignment: str) -> float | None:

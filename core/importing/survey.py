@@ -13,6 +13,7 @@ from core.errors import UserFacingError
 from core.importing.plan import ImportPlan, MendLimits, SentencePlan
 from core.motion.marker_table import MarkerTable, read_marker_table
 from core.motion.motion_files import SUFFIXES as MOTION_SUFFIXES
+from core.motion.readers.blendshape_files import take_name
 from core.motion.readers.tracked_points import OUTER_EYE_MM, is_tracked_points_folder, read_tracked_points
 from core.motion.recording import is_sentence_name
 from core.progress import SILENT, Progress
@@ -137,7 +138,7 @@ def _listed(folder: Path, tables: list[MarkerTable]) -> list[FoundSentence]:
         name = (row.get("sentence") or "").strip()
         if not is_sentence_name(name):
             raise UserFacingError(f"'{index}': '{name}' cannot be the name of a sentence.")
-        by_kind = _kinds([p for p in beside if p.stem == name])
+        by_kind = kinds_of([p for p in beside if p.stem == name])
         for kind in ("motion", "audio", "transcript"):
             if row.get(kind):
                 by_kind[kind] = folder / row[kind].strip()
@@ -145,7 +146,8 @@ def _listed(folder: Path, tables: list[MarkerTable]) -> list[FoundSentence]:
     return sentences
 
 
-def _kinds(files: Sequence[Path], unused: list[str] | None = None) -> dict[str, Path]:
+def kinds_of(files: Sequence[Path], unused: list[str] | None = None) -> dict[str, Path]:
+    """Return the first file of each kind (motion, audio, transcript, text); ``unused`` gets the others."""
     by_kind: dict[str, Path] = {}
     for path in files:
         kind = _kind(path)
@@ -189,7 +191,7 @@ def _by_stem(files: Sequence[Path], tables: list[MarkerTable]) -> tuple[list[Fou
     files = sorted(files, key=lambda p: (order.get(p.suffix.lower(), 99), str(p)))
     stems: dict[str, list[Path]] = {}
     for path in files:
-        stem = path.stem.removeprefix("bs_value_")
+        stem = take_name(path)
         if _kind(path) is None:
             if path.name != "markers.csv":
                 unused.append(str(path))
@@ -197,7 +199,7 @@ def _by_stem(files: Sequence[Path], tables: list[MarkerTable]) -> tuple[list[Fou
             stems.setdefault(stem, []).append(path)
     found = []
     for stem, members in stems.items():
-        by_kind = _kinds(members, unused)
+        by_kind = kinds_of(members, unused)
         if not set(by_kind) & {"motion", "audio"}:
             unused += [str(path) for path in by_kind.values()]
             continue

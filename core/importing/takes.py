@@ -11,10 +11,7 @@ from core.errors import UserFacingError
 from core.importing.plan import MendLimits, Reading, SentencePlan, axes_matrix
 from core.motion.motion_files import read_takes
 from core.motion.motion_track import MotionTrack, ReadOptions
-from core.motion.readers.blendshape_files import is_blendshape_file, read_blendshapes
-
-# Arrays of weights without a rate of their own are video's.
-_BLENDSHAPE_RATE_HZ = 30.0
+from core.motion.readers.blendshape_files import is_blendshape_file
 
 
 def read_take(sentence: SentencePlan, reading: Reading) -> MotionTrack:
@@ -51,13 +48,7 @@ def _takes(path: str, options: ReadOptions) -> dict[str, MotionTrack]:
 def _weights_as_markers(path: str, reading: Reading) -> MotionTrack:
     from core.face.blendshape_drive import markers_of_blendshapes
     from core.face.marker_units import load_marker_units
-    from core.motion.shape_mapping import mapped, read_shape_mapping
+    from core.motion.shape_mapping import read_units
 
-    is_array = path.lower().endswith(".npy")
-    rate_hz = reading.rate_hz or (_BLENDSHAPE_RATE_HZ if is_array else None)
-    track = read_blendshapes(path, reading.shape_names, rate_hz)
-    if is_array and reading.rate_hz is None:
-        track = replace(track, notes=(*track.notes, f"Taken to have {_BLENDSHAPE_RATE_HZ:g} frames a second."))
-    if reading.shape_sheet is not None:
-        track = mapped(track, read_shape_mapping(reading.shape_sheet))
+    track = read_units(path, reading.shape_names, reading.shape_sheet, reading.rate_hz)
     return markers_of_blendshapes(track, load_marker_units())

@@ -11,11 +11,14 @@ import numpy as np
 
 from core.errors import UserFacingError
 from core.motion.blendshape_track import ARKIT_UNITS, BlendshapeTrack, arkit_name
+from core.motion.readers.blendshape_files import read_blendshapes
 from core.motion.readers.delimited import read_delimited
 from core.motion.readers.sheet import read_sheet
 
 _MAXIMUM = re.compile(r"max\s*\(([^()]*)\)", re.IGNORECASE)
 _MOST_ROWS = 20_000
+# arrays of weights without a rate of their own are video's
+_ARRAY_RATE_HZ = 30.0
 
 
 @dataclass(frozen=True)
@@ -65,6 +68,22 @@ def read_shape_mapping(path: str | Path) -> ShapeMapping:
     if not sources:
         raise UserFacingError(f"'{path}' maps no shape to a unit of ARKit.")
     return ShapeMapping(sources, tuple(unused))
+
+
+def read_units(
+    path: str | Path, names: str | Path | None = None, sheet: str | Path | None = None, rate_hz: float | None = None
+) -> BlendshapeTrack:
+    """Read blendshape weights, by way of a studio's table where it comes with them.
+
+    names, rate_hz : see `core.motion.readers.blendshape_files.read_blendshapes`; an .npy is taken to have 30 frames a
+        second when nobody tells, and a note says so
+    sheet : see `read_shape_mapping`; None leaves the shapes as they are
+    """
+    is_untold = Path(path).suffix.lower() == ".npy" and rate_hz is None
+    track = read_blendshapes(path, names, _ARRAY_RATE_HZ if is_untold else rate_hz)
+    if is_untold:
+        track = replace(track, notes=(*track.notes, f"Taken to have {_ARRAY_RATE_HZ:g} frames a second."))
+    return track if sheet is None else mapped(track, read_shape_mapping(sheet))
 
 
 def mapped(track: BlendshapeTrack, mapping: ShapeMapping) -> BlendshapeTrack:

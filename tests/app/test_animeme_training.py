@@ -50,6 +50,27 @@ def test_animemes_of_an_artists_curves_keep_the_names_of_the_controls(efase, tak
     assert load_animemes(target).names == ("jawOpen", "smile")
 
 
+def test_weights_of_a_studio_become_its_controls_and_what_was_taken_for_granted_is_said(
+    efase, takes, settings_folder, tmp_path
+):
+    for take in ("a", "b"):
+        table = np.loadtxt(takes / f"{take}.csv", delimiter=",", skiprows=1)
+        np.save(takes / f"{take}.npy", table[:, -2:])
+        (takes / f"{take}.csv").unlink()
+    (tmp_path / "names.txt").write_text("jaw_down\nsmile_both\n", encoding="utf-8")
+    (tmp_path / "sheet.csv").write_text("ARKit,Ours\njawOpen,jaw_down\n", encoding="utf-8")
+    names = ("--shape-names", tmp_path / "names.txt")
+    words = ("train", "animeme", "--controls", takes, "-o", tmp_path / "talk.npz")
+    code, _, err = efase(*words)
+    assert code == 2 and "list of names" in err
+    code, out, err = efase(*words, *names, "--shape-sheet", tmp_path / "sheet.csv", "--json")
+    assert code == 0 and "a.npy: Taken to have 30 frames a second." in err
+    assert json.loads(out)["names"] == ["jawOpen"] and len(json.loads(out)["warnings"]) == 2
+    code, _, err = efase(*words, *names, "--rate", "30")
+    assert code == 0 and not err
+    assert load_animemes(tmp_path / "talk.npz").names == ("jaw_down", "smile_both")
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [

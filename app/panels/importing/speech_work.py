@@ -16,11 +16,11 @@ from core.folders import cache_dir, data_dir
 from core.importing.plan import ImportPlan, SentencePlan
 from core.importing.report import SentenceReport
 from core.importing.run import SURE, prepare
-from core.importing.sentence_work import GIVEN
 from core.importing.sound_offset import OffsetEstimate, mouth_opening, pooled_offset
 from core.importing.work_cache import KeptSentence
 from core.media.audio import load_audio
 from core.progress import Progress
+from core.speech.placing import GIVEN
 from core.speech.second_listening import AlignmentConfidence, listen_again
 from core.speech.textgrid import write_textgrid
 from core.speech.transcript import Transcript

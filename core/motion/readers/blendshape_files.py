@@ -34,6 +34,11 @@ class NamesUnknown(UserFacingError):
         )
 
 
+def take_name(path: Path) -> str:
+    """Return what the sound and the transcript of a take of weights are called: facegood's files put a word before."""
+    return path.stem.removeprefix("bs_value_")
+
+
 def is_blendshape_file(path: str | Path) -> bool:
     """Tell a file of weights from one of markers; raises `UserFacingError` when it cannot be read at all."""
     path = Path(path)
