@@ -1,4 +1,4 @@
-"""Blendshape weights drive a face that has those shapes: its markers, or the whole face."""
+"""Blendshape weights drive the markers of a face that has those shapes; `core.rig.rig` moves whole faces."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from core.errors import UserFacingError
-from core.face.face import Face
 from core.face.marker_units import MarkerUnits
 from core.motion.blendshape_track import BlendshapeTrack
 from core.motion.motion_track import MotionTrack
@@ -34,28 +33,6 @@ def markers_of_blendshapes(track: BlendshapeTrack, units: MarkerUnits, kept_only
     positions = (rest + offsets.reshape(len(weights), len(chosen), 3)).astype(np.float32)
     names = tuple(units.markers.names[k] for k in chosen)
     return MotionTrack(positions, names, track.rate_hz, notes=(*track.notes, *note))
-
-
-class BlendshapeDrive:
-    """Moves all vertices of a face, teeth and tongue too, by weights of its units.
-
-    face : with units; names : the track's, one a weight
-
-    ``notes`` says which units the face lacks. Raises `UserFacingError` when it has none of them.
-    """
-
-    def __init__(self, face: Face, names: Sequence[str]) -> None:
-        used, self.notes = _shared(names, face.units, face.name)
-        self._columns = [list(names).index(name) for name in used]
-        self._units = np.array([face.units[name] for name in used], np.float32).reshape(len(used), -1)
-
-    def displacement(self, weights: np.ndarray) -> np.ndarray:
-        """Return how the vertices move in one frame: weights (B,) to float32, shape (V, 3), mm.
-
-        A frame in which no face was tracked (NaN) rests.
-        """
-        known = np.nan_to_num(np.asarray(weights, np.float32)[self._columns])
-        return (known @ self._units).reshape(-1, 3)
 
 
 def _shared(names: Sequence[str], known: Mapping[str, np.ndarray], what: str) -> tuple[list[str], tuple[str, ...]]:
