@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -136,10 +135,8 @@ def test_silence_and_a_folder_of_sounds_that_is_not_there_are_told(takes):
         read_artist_examples([takes], CurveReading(speech_folder=takes / "gone"))
 
 
-def test_facegoods_weights_are_read_with_transcripts_beside_the_sounds(tmp_path):
-    folder = Path(__file__).parents[4] / "shared" / "data" / "facegood"
-    if not folder.is_dir():
-        pytest.skip(f"needs {folder}")
+def test_facegoods_weights_are_read_with_transcripts_beside_the_sounds(tmp_path, shared_data):
+    folder = shared_data("facegood")
     (tmp_path / "1114_3_15.lab").write_text("0 20 pau\n20 30 aa\n30 49.07 pau\n", encoding="utf-8")
     reading = CurveReading(folder / "shirley_1015_bs_name.npy", folder / "Voice2Face_blendshape2ARkit.xlsx",
                            speech_folder=tmp_path)  # fmt: skip
