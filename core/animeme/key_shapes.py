@@ -26,7 +26,7 @@ def key_lip_shapes(
 
     lip_displacements : shape (F, K, 3), mm from rest
     returns : the frames of the exemplars, int, ascending
-    Raises `UserFacingError` when fewer than two different frames move.
+    Raises `UserFacingError` when fewer than two different frames move, or none comes out as an exemplar.
     """
     packed = np.reshape(lip_displacements, (len(lip_displacements), -1)).astype(float)
     away = np.linalg.norm(packed, axis=1)
@@ -44,6 +44,8 @@ def key_lip_shapes(
             best = found
         if n_shapes <= 2 * len(best) <= 4 * n_shapes:
             break
+    if not len(best):
+        raise UserFacingError(f"The captured lips do not fall into {n_shapes} key shapes.", "Ask for another number.")
     return chosen[np.sort(best)]
 
 
