@@ -74,8 +74,9 @@ def test_a_failure_arrives_as_what_it_is(how, kind, says, capfd):
 
 
 def test_a_cancel_does_not_wait_for_the_work():
+    others = multiprocessing.active_children()  # another test's pool of workers waits for more work
     began_s = time.monotonic()
     with pytest.raises(Cancelled):
         run_apart(sleep, (60,), Recorded(cancel_after_s=0.3), DIED)
     assert time.monotonic() - began_s < 10
-    assert multiprocessing.active_children() == []
+    assert set(multiprocessing.active_children()) <= set(others)
