@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import collections
 import contextlib
 import os
-import warnings
 from collections.abc import Callable, Iterable, Iterator
 
 from core.errors import UserFacingError
@@ -21,7 +21,11 @@ def here(calls: Iterable[tuple[Callable, tuple]]) -> Iterator:
 
 
 def cores(n_jobs: int = -1) -> Workers:
-    """Workers of this machine: ``n_jobs`` processes, -1 is one a core; this process alone for one."""
+    """Workers of this machine: ``n_jobs`` processes, -1 is one a core; this process alone for one.
+
+    Left half way, or stopped by a call that raises, the calls already begun end in peace and no other begins: killing
+    them would race with joblib's own thread.
+    """
     n_jobs = (os.cpu_count() or 1) if n_jobs < 0 else n_jobs
 
     def work(calls: Iterable[tuple[Callable, tuple]]) -> Iterator:
@@ -31,18 +35,26 @@ def cores(n_jobs: int = -1) -> Workers:
         if n_jobs == 1 or len(calls) < 2:
             yield from here(calls)
             return
-        jobs = [delayed(function)(*arguments) for function, arguments in calls]
-        answers = Parallel(n_jobs=n_jobs, return_as="generator_unordered", batch_size=1, pre_dispatch="all")(jobs)
+        is_left = False
+        jobs = (delayed(_answer_or_error)(*call) for call in calls if not is_left)
+        answers = Parallel(n_jobs=n_jobs, return_as="generator_unordered", batch_size=1, pre_dispatch=n_jobs + 1)(jobs)
         try:
-            # `yield from` would close joblib's generator outside of what catches its warning
-            for answer in answers:  # noqa: UP028
+            for answer, error in answers:
+                if error is not None:
+                    raise error
                 yield answer
         finally:
-            with warnings.catch_warnings():  # joblib tells that work was left, which is what a cancel asks for
-                warnings.simplefilter("ignore", UserWarning)
-                answers.close()
+            is_left = True
+            collections.deque(answers, maxlen=0)
 
     return work
+
+
+def _answer_or_error(function: Callable, arguments: tuple) -> tuple:
+    try:
+        return function(*arguments), None
+    except Exception as error:
+        return None, error
 
 
 @contextlib.contextmanager

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import pytest
 
 from core.batch.journal import Journal
@@ -45,10 +47,32 @@ def test_every_call_is_answered_once(n_jobs):
     assert sorted(cores(n_jobs)(calls)) == list(here(calls)) == [n * n for n in range(7)]
 
 
-def test_work_can_be_left_half_way():
-    answers = cores(2)([(_squared, (n,)) for n in range(20)])
+def _named_in(folder, n: int) -> int:
+    (folder / str(n)).write_text("")
+    time.sleep(0.05)
+    return n
+
+
+@pytest.mark.parametrize("times", range(3))
+def test_work_left_half_way_begins_nothing_more(tmp_path, times):
+    answers = cores(2)([(_named_in, (tmp_path, n)) for n in range(40)])
     next(answers)
     answers.close()
+    begun = len(list(tmp_path.iterdir()))
+    assert 1 <= begun <= 10
+    # the same workers answer the next calls, and the left ones stay left
+    assert sorted(cores(2)([(_squared, (n,)) for n in range(4)])) == [0, 1, 4, 9]
+    assert len(list(tmp_path.iterdir())) == begun
+
+
+def _refuses(n: int) -> int:
+    raise UserFacingError(f"Number {n} is refused.")
+
+
+def test_a_call_that_raises_ends_the_work_with_its_error():
+    with pytest.raises(UserFacingError, match=r"Number \d+ is refused"):
+        list(cores(2)([(_refuses, (n,)) for n in range(20)]))
+    assert sorted(cores(2)([(_squared, (n,)) for n in range(3)])) == [0, 1, 4]
 
 
 def test_a_scheduler_that_is_not_there_is_said():
