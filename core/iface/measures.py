@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 _STILL = 1e-12  # of the square of the largest displacement
+_ROUNDING = 1e-6  # of the largest displacement
 
 
 class Nearness(NamedTuple):
@@ -31,10 +32,11 @@ def largest_displacements(displacements: np.ndarray) -> np.ndarray:
 
     The paper takes "its maximum absolute displacement in the collected database", so that coordinates come to lie in
     [-1, 1]; it is read as a length, for a coordinate of its own would make as much of an axis along which a point only
-    trembles as of those along which it moves. A point that never moves has 1.
+    trembles as of those along which it moves. A point that never moves, such as the origin of head space, has infinity:
+    its normalised displacement is 0, whatever rounding says.
     """
     furthest = np.linalg.norm(displacements, axis=2).max(axis=0).astype(float)
-    return np.where(furthest > 0, furthest, 1.0)
+    return np.where(furthest > _ROUNDING * furthest.max(initial=0.0), furthest, np.inf)
 
 
 def nearness(captured: np.ndarray, estimated: np.ndarray, largest_mm: np.ndarray) -> Nearness:

@@ -68,7 +68,16 @@ def test_points_are_divided_by_the_longest_way_they_go():
     moved = np.zeros((3, 2, 3))
     moved[1, 0] = 0.0, 3.0, 4.0
     moved[2, 0] = -1.0, 0.0, 0.0
-    np.testing.assert_array_equal(largest_displacements(moved), [5.0, 1.0])
+    np.testing.assert_array_equal(largest_displacements(moved), [5.0, np.inf])
+
+
+def test_rounding_of_a_point_at_rest_is_no_motion():
+    captured = np.random.default_rng(5).normal(size=(30, 2, 3))
+    captured[:, 1] *= 1e-13
+    largest = largest_displacements(captured)
+    estimated = captured.copy()
+    estimated[:, 1] *= -1.0
+    assert nearness(captured, estimated, largest).r == pytest.approx(1.0)
 
 
 def test_what_does_not_match_is_refused():
