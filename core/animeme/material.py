@@ -11,7 +11,7 @@ from core.animeme.cross_mapping import RIDGE_MM2, solve_controls, solve_shares, 
 from core.animeme.examples import Example
 from core.animeme.key_shapes import key_lip_shapes
 from core.errors import UserFacingError
-from core.evaluation.measures import lip_gap_mm
+from core.evaluation.measures import lip_gap_mm, lip_width_mm
 from core.face.face import Face
 from core.motion.database import MotionDatabase
 from core.motion.head_space import in_head_space
@@ -110,8 +110,7 @@ def mouth_measures(database: MotionDatabase) -> tuple[tuple[str, ...], Mapping]:
     upper, lower, left, right = marks
 
     def measured(positions: np.ndarray) -> np.ndarray:
-        width = np.linalg.norm(positions[:, left] - positions[:, right], axis=1)
-        return np.stack([lip_gap_mm(positions, upper, lower), width], axis=1)
+        return np.stack([lip_gap_mm(positions, upper, lower), lip_width_mm(positions, left, right)], axis=1)
 
     rest = measured(database.markers.rest[None])
     return ("lip gap", "mouth width"), lambda positions: measured(positions) - rest

@@ -55,6 +55,11 @@ class CapturedTruth:
         upper, lower = self.markers.landmark("upper_lip"), self.markers.landmark("lower_lip")
         return None if upper is None or lower is None else measures.lip_gap_mm(positions, upper, lower)
 
+    def width_mm(self, positions: np.ndarray) -> np.ndarray | None:
+        """Return the lip width of ``positions``, shape (n_frames,); None when the markers do not show it."""
+        left, right = self.markers.landmark("mouth_corner_left"), self.markers.landmark("mouth_corner_right")
+        return None if left is None or right is None else measures.lip_width_mm(positions, left, right)
+
 
 @dataclass(frozen=True, eq=False)
 class Comparison:

@@ -43,6 +43,11 @@ def lip_gap_mm(positions: np.ndarray, upper_lip: int, lower_lip: int) -> np.ndar
     return positions[:, upper_lip, 1] - positions[:, lower_lip, 1]
 
 
+def lip_width_mm(positions: np.ndarray, left_corner: int, right_corner: int) -> np.ndarray:
+    """Distance of the markers in the corners of the mouth, shape (n_frames,)."""
+    return np.linalg.norm(positions[:, left_corner] - positions[:, right_corner], axis=1)
+
+
 def correlation(synthesised: np.ndarray, captured: np.ndarray) -> float:
     """Pearson's r of two tracks; 0 where one of them holds still."""
     a, b = synthesised - synthesised.mean(), captured - captured.mean()
