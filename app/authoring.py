@@ -27,6 +27,7 @@ from app.rigs import Rigs
 from app.solving import Solving
 from core.document.change import Change
 from core.document.edits import SetDatabase, SetEmotion, SetFace, SetSpeech
+from core.document.live_engine import LiveEngine
 from core.document.parts import DEFAULT_FACE, AlignedSpeech, FaceChoice
 from core.errors import UserFacingError
 from core.search.engine import SearchAnswer
@@ -169,6 +170,10 @@ class Authoring(Editing):
     def follow_later(self) -> None:
         """Find motion for the speech once there is a database for it, and anew after each edit."""
         self._solving.follow_later()
+
+    def live_engine(self, name: str) -> LiveEngine:
+        """Return an engine for the database that is open; whoever else asks it waits for its turn."""
+        return self._solving.engine(name)
 
     @property
     def changed_slots(self) -> tuple[int, ...]:

@@ -52,12 +52,12 @@ class Solving(QObject):
         """Take the search of a database that was opened; other engines for it are made when they are asked for."""
         self._engines.setdefault((engine.database.content_hash, DEFAULT_ENGINE), LiveEngine(lambda: engine))
 
-    def _engine(self) -> LiveEngine:
-        """The engine that the document asks for now."""
-        document = self._document
-        key = document.database.content_hash, document.engine
+    def engine(self, name: str) -> LiveEngine:
+        """Return the engine ``name`` for the database that is open, one for all who ask."""
+        database = self._document.database
+        key = database.content_hash, name
         if key not in self._engines:
-            self._engines[key] = LiveEngine(partial(_made_engine, document.engine, document.database))
+            self._engines[key] = LiveEngine(partial(_made_engine, name, database))
         return self._engines[key]
 
     def follow(self) -> None:
@@ -94,7 +94,7 @@ class Solving(QObject):
             return
         self._jobs.cancel("prices")
         weights, audio = document.search_weights, document.speech.audio
-        request = _SolveRequest(self._engine(), speech, weights, audio, _Layers.of(document))
+        request = _SolveRequest(self.engine(document.engine), speech, weights, audio, _Layers.of(document))
         self._jobs.start("search", texts.SYNTHESISING, request, _solve, self._on_solved)
 
     def _on_solved(self, solved: tuple[EngineAnswer, MarkerMotion, PoseTracks]) -> None:
@@ -105,7 +105,7 @@ class Solving(QObject):
         document.show_answer(answer, motion)
         self.solved.emit(answer)
         if path is not None:
-            self._jobs.start("prices", "", self._engine(), _price, self._on_priced)
+            self._jobs.start("prices", "", self.engine(document.engine), _price, self._on_priced)
 
     def _on_priced(self, priced: PricedPath | None) -> None:
         if priced is not None and priced.path is self._document.path:
