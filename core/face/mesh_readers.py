@@ -20,6 +20,8 @@ class RawMesh:
 
     positions : float64, shape (V, 3); triangles : int, shape (T, 3); uv : float32, shape (V, 2), or None
     labels : object, group and material names; label_of_triangle : int, shape (T,), index into them
+    corner_uv : float32, shape (T, 3, 2), where a file gives the corners of its triangles texture coordinates of their
+        own, or None; ``uv`` is then the first of each vertex
     """
 
     positions: np.ndarray
@@ -27,6 +29,7 @@ class RawMesh:
     uv: np.ndarray | None
     labels: tuple[str, ...]
     label_of_triangle: np.ndarray
+    corner_uv: np.ndarray | None = None
 
 
 def read_mesh(path: Path) -> RawMesh:
@@ -57,6 +60,7 @@ def _read_obj(path: Path, text: str) -> RawMesh:
     uvs: list[list[float]] = []
     uv_of_vertex: dict[int, int] = {}
     triangles: list[tuple[int, int, int]] = []
+    triangle_uvs: list[tuple[int, int, int]] = []
     labels: dict[str, int] = {}
     label_of_triangle: list[int] = []
     named = {"o": "", "g": "", "usemtl": ""}
@@ -69,16 +73,18 @@ def _read_obj(path: Path, text: str) -> RawMesh:
             elif word == "vt":
                 uvs.append([float(rest[0]), float(rest[1])])
             elif word == "f":
-                corners = []
+                corners, corner_uvs = [], []
                 for corner in rest:
                     vertex, _, others = corner.partition("/")
                     corners.append(_counted(int(vertex), len(positions)))
                     uv = others.partition("/")[0]
+                    corner_uvs.append(_counted(int(uv), len(uvs)) if uv else -1)
                     if uv:
-                        uv_of_vertex.setdefault(corners[-1], _counted(int(uv), len(uvs)))
+                        uv_of_vertex.setdefault(corners[-1], corner_uvs[-1])
                 label = labels.setdefault(" ".join(name for name in named.values() if name), len(labels))
                 for i in range(1, len(corners) - 1):
                     triangles.append((corners[0], corners[i], corners[i + 1]))
+                    triangle_uvs.append((corner_uvs[0], corner_uvs[i], corner_uvs[i + 1]))
                     label_of_triangle.append(label)
             elif word in named:
                 named[word] = " ".join(rest)
@@ -86,16 +92,19 @@ def _read_obj(path: Path, text: str) -> RawMesh:
             raise UserFacingError(
                 f"{path}, line {number}: not a line of an OBJ mesh: {line.strip()[:60]!r}."
             ) from error
-    uv = None
+    uv = corner_uv = None
     if uv_of_vertex:
+        table = np.array([*uvs, (0.0, 0.0)], np.float32)  # the last one for corners without
         uv = np.zeros((len(positions), 2), np.float32)
-        uv[list(uv_of_vertex)] = np.array(uvs, np.float32)[list(uv_of_vertex.values())]
+        uv[list(uv_of_vertex)] = table[list(uv_of_vertex.values())]
+        corner_uv = table[np.array(triangle_uvs, int).reshape(-1, 3)]
     return RawMesh(
         np.array(positions, float).reshape(-1, 3),
         np.array(triangles, int).reshape(-1, 3),
         uv,
         tuple(labels) or ("",),
         np.array(label_of_triangle, int),
+        corner_uv,
     )
 
 

@@ -55,6 +55,16 @@ def read_gltf_shapes(path: Path) -> tuple[RawMesh, dict[str, np.ndarray]]:
     return mesh, shapes
 
 
+def gltf_document(path: Path) -> tuple[dict, list[bytes]]:
+    """Return the JSON of a glTF or GLB file and its buffers; raises `UserFacingError`."""
+    try:
+        return _opened(path, path.read_bytes())
+    except OSError as error:
+        raise UserFacingError(f"'{path}' cannot be read: {error.strerror}.") from error
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError, struct.error, binascii.Error) as error:
+        raise UserFacingError(f"'{path}' is not a readable glTF file.") from error
+
+
 def _opened(path: Path, data: bytes) -> tuple[dict, list[bytes]]:
     """The JSON of a file and its buffers."""
     embedded = b""
