@@ -15,6 +15,7 @@ from app.export import check_outputs
 from app.synthesis import Ready, SynthesisJob, made_ready, run
 from core.batch.failures import write_failures
 from core.batch.journal import Journal
+from core.batch.stamps import stamp
 from core.batch.workers import workers_at
 from core.errors import UserFacingError
 from core.progress import SILENT, Progress
@@ -63,7 +64,7 @@ def run_batch(job: BatchJob, progress: Progress = SILENT) -> dict[str, object]:
                     failures[line] = failure
                 else:
                     outputs = dict(todo)[line].outputs
-                    journal.add(keys[line], outputs=[[str(path), *_stamp(path)] for path in outputs], warnings=warnings)
+                    journal.add(keys[line], outputs=[[str(path), *stamp(path)] for path in outputs], warnings=warnings)
                 progress.step((n + 1) / len(todo), f"line {line} of {job.table.name}")
     in_order = sorted(failures.items())
     if job.failures is not None:
@@ -152,21 +153,12 @@ def _synthesise(line: int, job: SynthesisJob) -> tuple[int, str, list[str]]:
 
 def _key(job: SynthesisJob) -> str:
     """What a line asks for, files by size and time of change: equal keys give equal outputs."""
-    read = (job.audio, job.phones, job.emotions, job.database, job.lexicon, job.marker_file, job.video.texture)
-    stamps = [[str(path), *_stamp(Path(path))] for path in read if path is not None]
+    stamps = [[path, *stamp(Path(path))] for path in job.files_read]
     return hashlib.sha256(json.dumps([asdict(job), stamps], sort_keys=True, default=str).encode()).hexdigest()
 
 
-def _stamp(path: Path) -> tuple[int, int]:
-    try:
-        found = path.stat()
-    except (OSError, ValueError):
-        return -1, -1
-    return found.st_size, found.st_mtime_ns
-
-
 def _is_finished(entry: dict | None) -> bool:
-    return entry is not None and all([*_stamp(Path(path))] == stamp for path, *stamp in entry["outputs"])
+    return entry is not None and all([*stamp(Path(path))] == written for path, *written in entry["outputs"])
 
 
 def in_words(answer: dict[str, object], most: int = 20) -> str:

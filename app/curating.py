@@ -67,9 +67,9 @@ class Curating(QObject):
         return curation is not None and curation.can_be_written and (self._lock is not None or self._is_unstored)
 
     def wait(self) -> None:
-        """Return when all that was removed or restored so far is written, or refused."""
-        if self._newest is not None:
-            self._newest.result()
+        """Return when all that was removed or restored so far is written or refused, and on its way to be told."""
+        if self._thread is not None:
+            self._thread.submit(int).result()  # the thread tells of a write before it goes on to this
 
     def close(self) -> None:
         """Let another window write the list, once all is written."""

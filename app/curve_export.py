@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from app.control_export import check_control_outputs, write_track
-from app.export import VideoSettings
+from app.export import VideoSettings, check_outputs_are_not_read
 from core.animeme.controls import ControlTrack
-from core.errors import UserFacingError
 from core.media.audio import Audio, load_audio
 from core.motion.readers.blendshape_files import read_blendshapes
 from core.motion.shape_mapping import mapped, read_shape_mapping
@@ -34,10 +32,8 @@ class CurveJob:
 
 def run(job: CurveJob, progress: Progress = SILENT) -> dict[str, object]:
     """Do the job and return the object of ``--json``; raises `UserFacingError` before anything is half-written."""
-    given = {os.path.realpath(path) for path in (job.track, job.audio, job.names, job.mapping) if path}
-    for path in job.outputs:
-        if os.path.realpath(path) in given:
-            raise UserFacingError(f"'{path}' is read and cannot be written at the same time.")
+    given = (job.track, job.audio, job.names, job.mapping, job.face, job.video.texture)
+    check_outputs_are_not_read(job.outputs, (str(path) for path in given if path is not None))
     check_control_outputs(job.outputs, job.face)
     track, warnings = _read(job)
     audio = None if job.audio is None else load_audio(job.audio)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -81,15 +82,19 @@ def video_size(text: str) -> tuple[int, int]:
     return int(width), int(height)
 
 
-def background_colour(text: str) -> tuple[float, float, float]:
-    """Return the colour that ``#rrggbb`` means; `UserFacingError` for anything else."""
+def background_colour(text: str | None) -> tuple[float, float, float] | None:
+    """Return the colour that ``#rrggbb`` means, None for None; `UserFacingError` for anything else."""
+    if text is None:
+        return None
     if not _COLOUR.fullmatch(text):
         raise UserFacingError(f"'{text}' is not a colour.", "Write it as #rrggbb, for instance #00ff00.")
     return tuple(int(text[i : i + 2], 16) / 255 for i in (1, 3, 5))
 
 
-def span_of_time(text: str) -> tuple[float, float]:
-    """Return (start_s, end_s) of ``1.5-3``; `UserFacingError` unless it is a stretch of time."""
+def span_of_time(text: str | None) -> tuple[float, float] | None:
+    """Return (start_s, end_s) of ``1.5-3``, None for None; `UserFacingError` unless it is a stretch of time."""
+    if text is None:
+        return None
     start, _, end = text.partition("-")
     try:
         span_s = float(start), float(end)
@@ -115,6 +120,14 @@ def check_outputs(paths: list[Path]) -> None:
         elif suffix not in (*DRAWN_SUFFIXES, *MARKER_SUFFIXES, TRANSCRIPT_SUFFIX):
             raise UserFacingError(f"'{path}' has no suffix that can be written.", f"Known are {', '.join(SUFFIXES)}.")
         check_target(numbered(path, 0) if suffix == IMAGE_SUFFIX else path)
+
+
+def check_outputs_are_not_read(outputs: Iterable[Path], files_read: Iterable[str]) -> None:
+    """Raise `UserFacingError` for an output that is also one of ``files_read``."""
+    read = {os.path.realpath(path) for path in files_read}
+    for path in outputs:
+        if os.path.realpath(path) in read:
+            raise UserFacingError(f"'{path}' is read and cannot be written at the same time.")
 
 
 def export(

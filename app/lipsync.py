@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import time
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from app.control_export import check_control_outputs, write_track
 from app.curve_export import cut
-from app.export import VideoSettings, rounded_seconds
+from app.export import VideoSettings, check_outputs_are_not_read, rounded_seconds
 from app.speech import emotion_modifiers, load_speech
 from core.animeme.animeme import load_animemes
 from core.errors import UserFacingError
@@ -41,14 +40,17 @@ class LipsyncJob:
     phone_table: str | None = None
     holds: bool = False
 
+    @property
+    def files_read(self) -> tuple[str, ...]:
+        """Every file that is read for it; a few of the names are words (a text, a face of ours), and no files."""
+        given = (self.audio, self.model, self.text, self.phones, self.emotions, self.face, self.key_poses,
+                 self.video.texture, self.lexicon, self.phone_table)  # fmt: skip
+        return tuple(str(name) for name in given if name is not None)
+
 
 def run(job: LipsyncJob, progress: Progress = SILENT) -> dict[str, object]:
     """Do the job and return the object of ``--json``; raises `UserFacingError` before anything is half-written."""
-    given = (job.audio, job.model, job.phones, job.emotions, job.key_poses, job.lexicon, job.text, job.face)
-    read = {os.path.realpath(path) for path in given if path is not None}
-    for path in job.outputs:
-        if os.path.realpath(path) in read:
-            raise UserFacingError(f"'{path}' is read and cannot be written at the same time.")
+    check_outputs_are_not_read(job.outputs, job.files_read)
     check_control_outputs(job.outputs, job.face)
     model = load_animemes(job.model)
     if model.names[0].startswith("component"):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import time
 from dataclasses import dataclass, field
@@ -10,7 +9,7 @@ from pathlib import Path
 
 from app.control_export import check_rigs
 from app.demo import open_named
-from app.export import VideoSettings, check_outputs, rounded_seconds, write_outputs
+from app.export import VideoSettings, check_outputs, check_outputs_are_not_read, rounded_seconds, write_outputs
 from app.speech import emotion_modifiers, load_speech
 from core.document.parts import FaceChoice
 from core.errors import UserFacingError
@@ -50,6 +49,13 @@ class SynthesisJob:
     strict: bool = False
     language: str | None = None
     phone_table: str | None = None
+
+    @property
+    def files_read(self) -> tuple[str, ...]:
+        """Every file that is read for it; a few of the names are words (a text, a face of ours), and no files."""
+        given = (self.audio, self.text, self.phones, self.database, self.emotions, self.face, self.marker_file,
+                 self.key_poses, self.weights, self.video.texture, self.lexicon, self.phone_table)  # fmt: skip
+        return tuple(str(name) for name in given if name is not None)
 
 
 @dataclass(frozen=True)
@@ -129,14 +135,9 @@ def run(job: SynthesisJob, progress: Progress = SILENT, ready: Ready | None = No
 
 
 def _check_inputs(job: SynthesisJob) -> None:
-    given = (job.audio, job.text, job.phones, job.database, job.emotions, job.marker_file, job.key_poses, job.lexicon,
-             job.phone_table, job.face, job.video.texture)  # fmt: skip
-    read = {os.path.realpath(path) for path in given if path is not None}
     if job.marker_file is not None and not job.marker_file.is_file():
         raise UserFacingError(f"There is no marker file '{job.marker_file}'.")
-    for path in job.outputs:
-        if os.path.realpath(path) in read:
-            raise UserFacingError(f"'{path}' is read and cannot be written at the same time.")
+    check_outputs_are_not_read(job.outputs, job.files_read)
 
 
 def phoneme_rows(transcript, path: MotionPath | None, nodes) -> list[dict[str, object]]:

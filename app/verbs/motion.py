@@ -98,8 +98,7 @@ def synth(
         csv_is_live_link=engine == "animeme", backend=backend, pins=tuple(pin or ()),
         weights=weights,
         video=VideoSettings(frame_rate(fps), *video_size(size), style, start_frame, head, gaze, texture,
-                            None if background is None else background_colour(background),
-                            None if span is None else span_of_time(span)),
+                            background_colour(background), span_of_time(span)),
         lexicon=lexicon, strict=strict, language=language, phone_table=phone_table,
     )  # fmt: skip
     with progress_bar("synth") as progress:
@@ -129,9 +128,9 @@ def export_project(
     from app.export import background_colour, span_of_time, video_size
     from app.project_export import ExportJob, run
 
-    job = ExportJob(project, tuple(output), db, video_size(size), style,
-                    None if background is None else background_colour(background),
-                    None if span is None else span_of_time(span))  # fmt: skip
+    job = ExportJob(
+        project, tuple(output), db, video_size(size), style, background_colour(background), span_of_time(span)
+    )
     with progress_bar("export") as progress:
         answer = run(job, progress)
     _tell_written(answer, json)

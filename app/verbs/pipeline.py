@@ -54,8 +54,7 @@ def lipsync(
         raise UserFacingError("A model and a database were given; a model of controls needs no database.")
     video = VideoSettings(
         frame_rate(fps), *video_size(size), start_frame=start_frame, head=head, gaze=gaze,
-        background=None if background is None else background_colour(background),
-        span_s=None if span is None else span_of_time(span),
+        background=background_colour(background), span_s=span_of_time(span),
     )  # fmt: skip
     common = dict(
         audio=audio, outputs=tuple(output), text=text, phones=phones, emotion=emotion, emotions=emotions, face=face,
@@ -90,8 +89,7 @@ def curves(
     from app.export import VideoSettings, background_colour, frame_rate, span_of_time, video_size
 
     video = VideoSettings(
-        frame_rate(fps), *video_size(size), background=None if background is None else background_colour(background),
-        span_s=None if span is None else span_of_time(span),
+        frame_rate(fps), *video_size(size), background=background_colour(background), span_s=span_of_time(span),
     )  # fmt: skip
     with progress_bar("curves") as progress:
         answer = run(CurveJob(track, tuple(output), names, rate, mapping, audio, face, video), progress)

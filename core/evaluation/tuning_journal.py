@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
-from core.errors import UserFacingError
+from core.batch.journal import LineJournal
 
 _FORMAT = "efase-tuning-journal 1"
 
@@ -22,42 +20,13 @@ class TuningJournal:
     """
 
     def __init__(self, path: Path | None) -> None:
-        self.path = path
         self._known: dict[tuple[bytes, bool, int], float] = {}
-        self._file = None
-        if path is None:
-            return
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            whole = self._read(path) if path.is_file() else 0
-            self._file = path.open("r+b" if path.is_file() else "w+b")
-            self._file.truncate(whole)
-            self._file.seek(whole)
-            if not whole:
-                self._write({"format": _FORMAT})
-        except OSError as error:
-            raise UserFacingError(
-                f"The tuning's journal '{path}' cannot be written: {error.strerror}.",
-                "Let EFASE_CACHE_DIR name a folder that can be written.",
-            ) from error
+        self._lines = None if path is None else LineJournal(
+            path, _FORMAT, self._take, "The tuning's journal", "Let EFASE_CACHE_DIR name a folder that can be written."
+        )  # fmt: skip
 
-    def _read(self, path: Path) -> int:
-        """Take what is whole and return how many bytes that is."""
-        whole = 0
-        with path.open("rb") as file:
-            for number, line in enumerate(file):
-                if not line.endswith(b"\n"):
-                    break
-                try:
-                    entry = json.loads(line)
-                    if number == 0 and entry["format"] != _FORMAT:
-                        break
-                    if number:
-                        self._keep(entry["point"], entry["exact"], entry["sentences"], entry["errors"])
-                except (ValueError, KeyError, TypeError):
-                    break
-                whole += len(line)
-        return whole
+    def _take(self, entry: dict) -> None:
+        self._keep(entry["point"], entry["exact"], entry["sentences"], entry["errors"])
 
     def __len__(self) -> int:
         return len(self._known)
@@ -69,23 +38,19 @@ class TuningJournal:
     def add(self, point: np.ndarray, exact: bool, sentences: Sequence[int], errors: Sequence[float]) -> None:
         """Keep the errors of some sentences at a point."""
         self._keep(point, exact, sentences, errors)
-        if self._file is not None:
-            self._write({"point": np.asarray(point, float).tolist(), "exact": exact, "sentences": list(sentences),
-                         "errors": list(errors)})  # fmt: skip
+        if self._lines is not None:
+            self._lines.write({"point": np.asarray(point, float).tolist(), "exact": exact,
+                               "sentences": list(sentences), "errors": list(errors)})  # fmt: skip
 
     def _keep(self, point, exact: bool, sentences: Sequence[int], errors: Sequence[float]) -> None:
         key = np.array(point, float).tobytes()
         for sentence, error in zip(sentences, errors, strict=True):
             self._known[key, bool(exact), int(sentence)] = float(error)
 
-    def _write(self, entry: dict) -> None:
-        self._file.write(json.dumps(entry).encode() + b"\n")
-        self._file.flush()  # the system has it then, and a kill of this process does not take it away
-
     def close(self, finished: bool = False) -> None:
         """Close the file; a run that is finished leaves none."""
-        if self._file is not None:
-            self._file.close()
-            self._file = None
+        if self._lines is not None:
+            self._lines.close()
             if finished:
-                os.unlink(self.path)
+                self._lines.path.unlink()
+            self._lines = None

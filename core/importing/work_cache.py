@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from core.batch.stamps import stamp
 from core.importing.plan import ImportPlan, SentencePlan
 from core.importing.report import SentenceReport
 from core.importing.sentence_work import WorkedSentence
@@ -38,17 +39,9 @@ def cache_path(folder: Path, plan: ImportPlan, sentence: SentencePlan) -> Path:
                               hold_out=""))  # fmt: skip
     files = (sentence.motion, sentence.audio, sentence.transcript, plan.lexicon, plan.like, plan.reading.shape_names,
              plan.reading.shape_sheet)  # fmt: skip
-    stamps = [(str(Path(f).resolve()), *_stamp(Path(f))) for f in files if f is not None]
+    stamps = [(str(Path(f).resolve()), *stamp(Path(f))) for f in files if f is not None]
     text = json.dumps([_VERSION, steering, stamps], sort_keys=True)
     return folder / f"{hashlib.sha256(text.encode()).hexdigest()[:32]}.npz"
-
-
-def _stamp(path: Path) -> tuple[int, int]:
-    try:
-        found = path.stat()
-    except (OSError, ValueError):
-        return -1, -1
-    return found.st_size, found.st_mtime_ns
 
 
 def keep(path: Path, worked: WorkedSentence) -> None:

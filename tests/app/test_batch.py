@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import fields, replace
+from pathlib import Path
 
 import pytest
 
+from app.synthesis import SynthesisJob
+from core.motion.database import open_database
 from core.motion.motion_files import read_motion
+from core.search.weight_files import write_weights
 
 
 @pytest.fixture
@@ -60,6 +65,28 @@ def test_what_is_done_is_not_done_again(efase, table, database_path, tmp_path):
 def test_another_request_is_made_anew(efase, table, database_path):
     _run(efase, table, database_path)
     assert _run(efase, table, database_path, "--fps", "60")["made"] == 3
+
+
+@pytest.mark.parametrize("option", ["--weights", "--markers"])
+def test_a_changed_file_is_made_anew(efase, table, database_path, tmp_path, option):
+    """Any file of the request, not only the sound."""
+    given = tmp_path / "given"
+    if option == "--weights":
+        write_weights(given, open_database(database_path).weights, {})
+    else:
+        given.write_text("marker,vertex\n")
+    assert _run(efase, table, database_path, option, given)["made"] == 3
+    assert _run(efase, table, database_path, option, given)["made"] == 0
+    given.write_text(given.read_text() + " \n")
+    assert _run(efase, table, database_path, option, given)["made"] == 3
+
+
+def test_every_file_of_a_request_is_known():
+    """A field that comes to name a file has to be told of, or a batch would not see it change."""
+    words = {"outputs", "emotion", "engine", "holds", "csv_is_live_link", "backend", "pins", "strict", "language"}
+    files = {f.name for f in fields(SynthesisJob)} - words - {"video"}
+    job = replace(SynthesisJob(Path("a"), ()), **{name: Path(f"file of {name}") for name in files})
+    assert set(job.files_read) == {f"file of {name}" for name in files}
 
 
 def test_a_journal_cut_by_a_kill_is_gone_on_with(efase, table, database_path):

@@ -25,6 +25,7 @@ from core.pipeline.gltf import write_glb
 from core.rig.key_poses import default_poses, load_key_poses
 from core.rig.rig import Rig, posed
 from core.rig.rig_files import load_rig
+from core.search.engine import SearchEngine
 from core.speech.transcript import PhonemeUtterance, Transcript
 from core.synthesis.marker_motion import MarkerMotion
 from tests.core.rig.small_rigs import small_rig
@@ -228,7 +229,7 @@ def test_long_sounds_are_held_when_asked(efase, artists_model, speech_path, tmp_
 
 
 def test_a_face_without_shapes_is_refused_before_any_synthesis(efase, speech_path, tmp_path, monkeypatch):
-    monkeypatch.setattr("app.synthesis.made_ready", lambda *_: pytest.fail("it was not looked at first"))
+    monkeypatch.setattr(SearchEngine, "synthesise", lambda *_: pytest.fail("it was not looked at first"))
     (tmp_path / "bare.obj").write_text("v 0 0 0\nv 100 0 0\nv 0 100 0\nf 1 2 3\n")
     code, _, err = efase("synth", speech_path, "--face", tmp_path / "bare.obj", "-o", tmp_path / "a.glb")
     assert code == 2 and "has no shapes" in err and not (tmp_path / "a.glb").exists()

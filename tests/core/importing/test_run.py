@@ -174,7 +174,7 @@ def test_an_import_that_was_killed_goes_on(plan, tmp_path):
     )
     process = subprocess.Popen([sys.executable, "-c", code])
     limit = time.monotonic() + 60
-    while len(list(folder.glob("*.npz")) if folder.is_dir() else []) < 2 and time.monotonic() < limit:
+    while len(list(folder.glob("[!.]*.npz")) if folder.is_dir() else []) < 2 and time.monotonic() < limit:
         time.sleep(0.01)
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
