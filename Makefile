@@ -10,7 +10,7 @@ run: $(VENV)/.prepared
 	else $(BIN)/efase demo --out out; fi
 
 test: $(VENV)/.prepared $(VENV)/.tools lint
-	$(BIN)/python -m pytest -q -m "not prove"
+	$(BIN)/python -m pytest -q -m "not prove" -n 2 --dist loadfile
 
 prove: $(VENV)/.prepared $(VENV)/.tools
 	$(BIN)/python -m pytest -q -m prove -o faulthandler_timeout=3600
