@@ -19,6 +19,7 @@ SMALL_PX = 11
 class Theme:
     """Colours by what they are for; each is a CSS colour.
 
+    other : the second of two that are compared, beside the accent
     emotion : colour of each emotion, the same everywhere (the paper's, with a light neutral on dark)
     """
 
@@ -32,19 +33,20 @@ class Theme:
     accent: str
     on_accent: str
     warning: str
+    other: str
     emotion: dict[str, str]
 
 
 DARK = Theme(
     ground="#1a1c1f", raised="#24272b", canvas="#131417", line="#2e3136", text="#d9dbdf", dim="#8d929b",
     faint="#5d626b",
-    accent="#e3ad55", on_accent="#1a1408", warning="#3a2f1d",
+    accent="#e3ad55", on_accent="#1a1408", warning="#3a2f1d", other="#4cc2b4",
     emotion={"neutral": "#c8cbd0", "happiness": "#5b9df5", "anger": "#e8574f", "sadness": "#5cb463"},
 )  # fmt: skip
 LIGHT = Theme(
     ground="#f3f3f1", raised="#ffffff", canvas="#e9e9e6", line="#d2d2cd", text="#26282b", dim="#6d717a",
     faint="#a3a6ac",
-    accent="#a8690a", on_accent="#ffffff", warning="#f6e7c8",
+    accent="#a8690a", on_accent="#ffffff", warning="#f6e7c8", other="#0b7a70",
     emotion={"neutral": "#4a4d52", "happiness": "#2566c4", "anger": "#c4302a", "sadness": "#2c8236"},
 )  # fmt: skip
 THEMES = {"dark": DARK, "light": LIGHT}

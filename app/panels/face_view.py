@@ -38,11 +38,17 @@ class FaceView(QOpenGLWidget):
     """Shows one pose of a marker set, on a face or bare. GL objects live in the widget's own context.
 
     bounds : the box of a face that is in view from the front, see `gpu.gl.camera.portrait_bounds`
+    marker_colour, beside_colour : of all markers, and of those beside them, 0..1; None: as everywhere
     """
 
-    def __init__(self, bounds: Callable[[Face], np.ndarray] = portrait_bounds) -> None:
+    def __init__(
+        self, bounds: Callable[[Face], np.ndarray] = portrait_bounds,
+        marker_colour: tuple[float, float, float] | None = None,
+        beside_colour: tuple[float, float, float] | None = None,
+    ) -> None:  # fmt: skip
         super().__init__()
         self._bounds = bounds
+        self._marker_colour, self._beside_colour = marker_colour, beside_colour or _CAPTURED_COLOUR
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setStatusTip(texts.ORBIT_TIP)
         self.focus_ring = FocusRing(self)
@@ -149,8 +155,9 @@ class FaceView(QOpenGLWidget):
                 face_light().keep(self._rig.face, renderer.light)
             self._stale["face"], self._drawn_style = False, None
         if self._stale["markers"] and self._markers is not None:
-            colours = np.tile(_MARKER_COLOUR, (len(self._markers), 1))
-            colours[self._markers.group("lips")] = _LIP_COLOUR
+            colours = np.tile(self._marker_colour or _MARKER_COLOUR, (len(self._markers), 1))
+            if self._marker_colour is None:
+                colours[self._markers.group("lips")] = _LIP_COLOUR
             renderer.set_markers(self._markers.rest, colours, marker_links(self._markers))
             self._stale["markers"] = False
         if self._stale["ghosts"] and self._markers is not None:
@@ -173,7 +180,7 @@ class FaceView(QOpenGLWidget):
         captured = np.empty((0, 3)) if self._captured is None else self._markers.rest + self._captured
         n_captured, (n_trails, n_steps, _) = len(captured), trails.shape
         points = np.concatenate([captured, trails.reshape(-1, 3)])
-        colours = np.concatenate([np.tile(_CAPTURED_COLOUR, (n_captured, 1)),
+        colours = np.concatenate([np.tile(self._beside_colour, (n_captured, 1)),
                                   np.tile(_TRAIL_COLOUR, (n_trails * n_steps, 1))])  # fmt: skip
         ends = n_captured + np.arange(n_trails * n_steps).reshape(n_trails, n_steps)
         links = np.stack([ends[:, :-1], ends[:, 1:]], axis=-1).reshape(-1, 2)

@@ -183,7 +183,7 @@ class FaceRenderer:
         ctx.enable_only(moderngl.NOTHING)
         self._clear(framebuffer, background)
         has_mesh = self._face is not None and style is not Style.MARKERS
-        if has_mesh and not self._draw_mesh(view, projection, (width, height), style, new_at_most):
+        if has_mesh and not self._draw_mesh(camera, (width, height), style, new_at_most):
             ctx.enable_only(moderngl.NOTHING)
             self._clear(framebuffer, background)
             return False
@@ -192,6 +192,33 @@ class FaceRenderer:
             self.ghosts.draw(view, projection, (width, height))
         ctx.enable_only(moderngl.NOTHING)
         return True
+
+    def draw_lines_over(
+        self, framebuffer: moderngl.Framebuffer, camera: Camera, colour: tuple[float, float, float]
+    ) -> None:
+        """Draw the edges of the face alone over the picture that is there, which does not hide them; the face does.
+
+        colour : red, green, blue, 0..1
+        """
+        if self._face is None:
+            return
+        ctx = self._ctx
+        width, height = framebuffer.size
+        framebuffer.color_mask = (False,) * 4
+        framebuffer.use()
+        ctx.viewport = (0, 0, width, height)
+        framebuffer.clear(depth=1.0)
+        ctx.enable_only(moderngl.DEPTH_TEST)
+        self._prepare_wire(camera, (width, height), (*colour, 1.0))
+        self._wire_array.render()  # first what hides
+        framebuffer.color_mask = (True,) * 4
+        framebuffer.use()  # which puts the mask on
+        ctx.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
+        ctx.depth_func = "<="
+        ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ZERO, moderngl.ONE
+        self._wire_array.render()
+        ctx.depth_func = "<"
+        ctx.enable_only(moderngl.NOTHING)
 
     def release(self) -> None:
         """Free all GL objects; the renderer is of no use afterwards."""
@@ -209,23 +236,25 @@ class FaceRenderer:
         if background is None:
             self._backdrop_array.render(moderngl.TRIANGLES, vertices=3)
 
-    def _draw_mesh(
-        self, view: np.ndarray, projection: np.ndarray, size_px: tuple[int, int], style: Style, new_at_most: int | None
-    ) -> bool:
-        ctx = self._ctx
-        ctx.enable_only(moderngl.DEPTH_TEST)
-        view, projection = (np.ascontiguousarray(matrix.T, np.float32) for matrix in (view, projection))
+    def _draw_mesh(self, camera: Camera, size: tuple[int, int], style: Style, new_at_most: int | None) -> bool:
+        self._ctx.enable_only(moderngl.DEPTH_TEST)
         if style is Style.WIREFRAME:
-            self._wire["view"].write(view.tobytes())
-            self._wire["projection"].write(projection.tobytes())
-            self._wire["viewport_px"].value = size_px
-            self._hidden_edges.use(0)
+            self._prepare_wire(camera, size, (0.0, 0.0, 0.0, 0.0))
             self._wire_array.render()
             return True
         self._grain.use(0)
         if self._picture is not None:
             self._picture.use(1)
-        return self._surfaces.draw(self._texture_mode(style), view, projection, size_px, new_at_most)
+        view, projection = _matrices(camera, size)
+        return self._surfaces.draw(self._texture_mode(style), view, projection, size, new_at_most)
+
+    def _prepare_wire(self, camera: Camera, size: tuple[int, int], alone: tuple[float, float, float, float]) -> None:
+        view, projection = _matrices(camera, size)
+        self._wire["view"].write(view.tobytes())
+        self._wire["projection"].write(projection.tobytes())
+        self._wire["viewport_px"].value = size
+        self._wire["alone"].value = alone
+        self._hidden_edges.use(0)
 
     def _texture_mode(self, style: Style) -> int:
         if style is not Style.TEXTURED:
@@ -237,3 +266,9 @@ class FaceRenderer:
             thing.release()
         self._mesh = []
         self._face = None
+
+
+def _matrices(camera: Camera, size: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
+    """View and projection as a program takes them: float32, column by column."""
+    aspect = size[0] / size[1]
+    return tuple(np.ascontiguousarray(m.T, np.float32) for m in (camera.view(aspect), camera.projection(aspect)))

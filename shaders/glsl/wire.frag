@@ -1,11 +1,14 @@
 #version 330 core
-// The wireframe: smooth lines on a quiet, dimly lit surface that hides what lies behind it.
+// The wireframe: smooth lines on a quiet, dimly lit surface that hides what lies behind it; or the lines alone, in one
+// colour, over another picture.
 #include "light.glsl"
 
 in vec3 wire_normal;
 noperspective in vec3 edge_px;
 flat in float wire_material;
 flat in float size_px;
+
+uniform vec4 alone;  // colour of the lines alone, and 1; 0: lines on their surface
 
 out vec4 colour;
 
@@ -21,5 +24,10 @@ void main() {
     float nearest = min(edge_px.x, min(edge_px.y, edge_px.z));
     // where triangles shrink to a few pixels, lines pale so that the picture does not fill up
     float room = clamp(size_px / 7.0, 0.30, 1.0);
-    colour = vec4(mix(surface, line, room * (1.0 - smoothstep(0.30, 1.15, nearest))), 1.0);
+    float covered = room * (1.0 - smoothstep(0.30, 1.15, nearest));
+    if (alone.a > 0.5) {
+        colour = vec4(alone.rgb, gl_FrontFacing ? covered : 0.0);
+    } else {
+        colour = vec4(mix(surface, line, covered), 1.0);
+    }
 }

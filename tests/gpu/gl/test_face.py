@@ -192,3 +192,22 @@ def test_a_shader_at_a_time_ends_in_the_same_picture(offscreen, head):
 def test_arrays_worked_out_elsewhere_draw_the_same(offscreen, head):
     (own,), (given,) = _drawn(offscreen, head), _drawn(offscreen, head, arrays=FaceArrays.of(head))
     assert (own == given).all()
+
+
+def test_lines_over_a_picture_are_of_one_colour_and_leave_the_rest(offscreen, renderer, head):
+    renderer.set_face(head)
+    before, colour = picture(offscreen, renderer), np.array([40.0, 230.0, 120.0])
+
+    def over(framebuffer):
+        renderer.draw(framebuffer, FRONT, Style.SHADED)
+        renderer.draw_lines_over(framebuffer, FRONT, tuple(colour / 255))
+
+    seen = offscreen.frame(over).astype(int)
+    changed = np.abs(seen - before).max(axis=2) > 3
+    inside = np.zeros_like(changed)
+    inside[4:176, 40:200] = True  # the ball, not the studio
+    assert 0.03 < changed[inside].mean() < 0.9 and not changed[~inside].any()
+    way = colour - before[changed]
+    share = ((seen[changed] - before[changed]) * way).sum(axis=1) / (way**2).sum(axis=1)
+    np.testing.assert_allclose(seen[changed], before[changed] + share[:, None] * way, atol=3)
+    assert (picture(offscreen, renderer) == before).all()  # nothing of it stays behind
