@@ -26,18 +26,10 @@ def say(fraction: float, what: str) -> None:
 
 def session(database: Path | None, n_actions: int) -> dict[str, object]:
     """Do the script's first actions in a window on a demo sentence; returns the figures of `figures`."""
-    from app.main import _application, _window
-    from app.watchdog import Watchdog
     from app.window import DEMO_START
     from app.window_script import ScriptedAnimator, script
 
-    app = _application()
-    app.setQuitOnLastWindowClosed(False)
-    window = _window()
-    watchdog = Watchdog()
-    watchdog.action = "start"
-    watchdog.start()
-    window.show()
+    window, watchdog = _watched_window()
     window.keeper.new()
     window.authoring.jobs.progressed.connect(lambda _kind, _fraction, message: say(0.0, message or "opening"))
     window.authoring.open_database(database)
@@ -85,16 +77,9 @@ def start_again(began_s: float) -> dict[str, object]:
 
     began_s : `time.time` when the process was started
     """
-    from app.main import _application, _start, _window
-    from app.watchdog import Watchdog
+    from app.main import _start
 
-    app = _application()
-    app.setQuitOnLastWindowClosed(False)
-    window = _window()
-    watchdog = Watchdog()
-    watchdog.action = "start"
-    watchdog.start()
-    window.show()
+    window, watchdog = _watched_window()
     _start(window, None)
     exposed_s = _wait_for(lambda: window.windowHandle() is not None and window.windowHandle().isExposed())
     document = window.authoring.document
@@ -106,6 +91,20 @@ def start_again(began_s: float) -> dict[str, object]:
     seen = figures(watchdog.blocks)
     return {"window_s": exposed_s - began_s, "project_s": project_s - began_s, "motion_s": motion_s - began_s,
             "worst": seen["worst"], "computed": seen["computed"]}  # fmt: skip
+
+
+def _watched_window() -> tuple:
+    """Show a window and begin to watch its main thread; returns (window, watchdog)."""
+    from app.main import _application, _window
+    from app.watchdog import Watchdog
+
+    _application().setQuitOnLastWindowClosed(False)
+    window = _window()
+    watchdog = Watchdog()
+    watchdog.action = "start"
+    watchdog.start()
+    window.show()
+    return window, watchdog
 
 
 def _hover(hover_s: list[float]) -> dict[str, float]:
