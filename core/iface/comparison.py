@@ -1,0 +1,150 @@
+"""A speaking face beside the captures: what is trained on, what is tested on, and how near it comes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from core.errors import UserFacingError
+from core.iface.heard_takes import HeardTake
+from core.iface.measures import Nearness, largest_displacements, nearness
+from core.iface.motion_unit import NEUTRAL, PAPER_UTTERANCE, MotionUnits
+from core.iface.speaking import SpeakingFace
+from core.iface.speech_features import RATE_HZ
+from core.motion.marker_set import MarkerSet
+from core.progress import SILENT, Progress
+
+SHARE = 0.8  # of the data to train on, as the paper
+SEED = 2002
+GAP_S = 2.0
+
+Trainer = Callable[[Sequence[HeardTake], Progress], SpeakingFace]
+
+
+@dataclass(frozen=True)
+class Part:
+    """What a face is trained on, and what it is tested on; the same takes may be in both, with other frames used."""
+
+    train: Sequence[HeardTake]
+    test: Sequence[HeardTake]
+
+
+def split_by_frame(takes: Sequence[HeardTake], share: float = SHARE, seed: int = SEED) -> Part:
+    """Draw ``share`` of all frames to train on, the rest to test on: the paper's split.
+
+    Nearly every test frame has neighbours that were trained on, 33 ms away.
+    """
+    usable = [np.flatnonzero(take.used) for take in takes]
+    total = sum(map(len, usable))
+    is_trained = np.zeros(total, bool)
+    is_trained[np.random.default_rng(seed).permutation(total)[: round(share * total)]] = True
+    stops = np.cumsum([len(frames) for frames in usable])
+    train, test = [], []
+    for take, frames, drawn in zip(takes, usable, np.split(is_trained, stops[:-1])):
+        for part, chosen in ((train, drawn), (test, ~drawn)):
+            used = np.zeros(len(take), bool)
+            used[frames[chosen]] = True
+            part.append(replace(take, used=used))
+    return Part(train, test)
+
+
+def split_by_time(takes: Sequence[HeardTake], share: float = SHARE, gap_s: float = GAP_S) -> Part:
+    """Train on the first ``share`` of every take, test on its end; ``gap_s`` before the cut belong to neither.
+
+    Raises `UserFacingError` for a take so short that nothing is left to train on.
+    """
+    train, test = [], []
+    for take in takes:
+        frames, cut = np.arange(len(take)), round(share * len(take))
+        heard = take.used & (frames < cut - round(gap_s * RATE_HZ))
+        if not heard.any() or not take.used[cut:].any():
+            raise UserFacingError(f"Take '{take.name}' is too short to be split by time.")
+        train.append(replace(take, used=heard))
+        test.append(replace(take, used=take.used & (frames >= cut)))
+    return Part(train, test)
+
+
+def estimates(face: SpeakingFace, takes: Sequence[HeardTake]) -> list[np.ndarray]:
+    """Let ``face`` speak what is heard, in the emotion of each take; displacements from its neutral pose, mm."""
+    spoken = []
+    for take in takes:
+        strengths = {} if take.emotion == NEUTRAL else {take.emotion: 1.0}
+        spoken.append(face.motion(take.features, strengths) - face.neutral)
+    return spoken
+
+
+def by_emotion(
+    takes: Sequence[HeardTake], spoken: Sequence[np.ndarray], largest_mm: np.ndarray, points: np.ndarray | None = None
+) -> dict[str, Nearness]:
+    """Measure the frames of ``takes`` that are used, emotion by emotion, as the columns of the paper's tables are.
+
+    points : rows of the points to measure; all when None
+    """
+    chosen = np.arange(len(largest_mm)) if points is None else points
+    found = {}
+    for emotion in dict.fromkeys(take.emotion for take in takes):
+        said = [(take, d) for take, d in zip(takes, spoken) if take.emotion == emotion]
+        captured = np.concatenate([take.displacements[take.used][:, chosen] for take, _ in said])
+        estimated = np.concatenate([d[take.used][:, chosen] for take, d in said])
+        if len(captured):
+            found[emotion] = nearness(captured.astype(float), estimated.astype(float), largest_mm[chosen])
+    return found
+
+
+def units_of_takes(
+    takes: Sequence[HeardTake], n_utterance: int | float = PAPER_UTTERANCE, n_expression: int | float = 2
+) -> MotionUnits:
+    """Learn motion units from the frames that are used, as many as the paper's; see `MotionUnits.fit`."""
+    return MotionUnits.fit(
+        {
+            emotion: np.concatenate([t.displacements[t.used] for t in takes if t.emotion == emotion])
+            for emotion in dict.fromkeys(take.emotion for take in takes)
+        }, n_utterance, n_expression,
+    )  # fmt: skip
+
+
+def through_units(takes: Sequence[HeardTake], units: MotionUnits) -> list[HeardTake]:
+    """Return ``takes`` as the paper's truth was: tracked by motion units, so that only what they span is left."""
+    kept = [units.deformations(units.parameters(t.displacements, t.emotion), t.emotion) for t in takes]
+    return [replace(take, displacements=moved) for take, moved in zip(takes, kept)]
+
+
+@dataclass(frozen=True)
+class Compared:
+    """One trained face on one split; each measure by scope, then by emotion.
+
+    Scopes are ``all markers``, ``lips and jaw`` where the marker set tells which those are, and ``tracked``: all
+    markers, of captures that were brought `through_units` as the paper's were.
+
+    train, test : see `by_emotion`
+    """
+
+    face: SpeakingFace
+    train: Mapping[str, Mapping[str, Nearness]]
+    test: Mapping[str, Mapping[str, Nearness]]
+
+
+def compare(trainer: Trainer, part: Part, markers: MarkerSet, progress: Progress = SILENT) -> Compared:
+    """Train on one half of ``part`` and measure on both; lengths that displacements are divided by are of the first."""
+    face = trainer(part.train, progress.part(0.0, 0.9))
+    largest_mm = largest_displacements(np.concatenate([take.displacements[take.used] for take in part.train]))
+    units = units_of_takes(part.train)
+    mouth = mouth_rows(markers)
+    measured = []
+    for i, takes in enumerate((part.train, part.test)):
+        progress.step(0.9 + 0.05 * i, "measuring")
+        spoken = estimates(face, takes)
+        scopes = {"all markers": by_emotion(takes, spoken, largest_mm)}
+        if len(mouth):
+            scopes["lips and jaw"] = by_emotion(takes, spoken, largest_mm, mouth)
+        scopes["tracked"] = by_emotion(through_units(takes, units), spoken, largest_mm)
+        measured.append(scopes)
+    progress.step(1.0, "measured")
+    return Compared(face, *measured)
+
+
+def mouth_rows(markers: MarkerSet) -> np.ndarray:
+    """Return the markers of lips and jaw, int, sorted; none when the set does not tell them."""
+    return np.union1d(markers.group("lips"), markers.group("jaw")).astype(int)
