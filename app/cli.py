@@ -9,7 +9,7 @@ import typer
 from typer.core import TyperGroup
 
 from app.terminal import clear_failures, end_on_signals, show_log
-from app.verbs import databases, importing, measuring, motion, pipeline, speech
+from app.verbs import databases, importing, measuring, motion, pipeline, speech, units
 from app.verbs.animeme import train
 from app.verbs.bench import bench
 from app.verbs.growth import db
@@ -50,6 +50,7 @@ app.command("import")(importing.import_captures)
 app.command()(pipeline.lipsync)
 app.command()(pipeline.curves)
 app.command()(pipeline.poses)
+app.command()(units.units)
 
 
 def main() -> None:

@@ -23,7 +23,7 @@ def spoken_deformations(
     Global motion is out already, for a database holds head space; so are silences and frames with lost markers, which
     make no motion node, and nodes in ``removed`` (public names). Emotions without frames are left out.
     """
-    stays = np.array([not removed or database.nodes.name(n) not in removed for n in range(len(database.nodes))], bool)
+    stays = nodes_that_count(database, removed)
     step = max(1, int(database.rate_hz / rate_hz + 1e-6))
     moved = {}
     for e, emotion in enumerate(EMOTIONS):
@@ -37,6 +37,11 @@ def spoken_deformations(
         if len(rows):
             moved[emotion] = database.pca.positions(database.frames[rows].astype(float)) - database.markers.rest
     return moved
+
+
+def nodes_that_count(database: MotionDatabase, removed: Collection[str]) -> np.ndarray:
+    """Return which motion nodes are not in ``removed`` (public names); bool, shape (n_nodes,)."""
+    return np.array([not removed or database.nodes.name(n) not in removed for n in range(len(database.nodes))], bool)
 
 
 def units_of_database(
