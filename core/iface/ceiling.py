@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from core.actress.corpus import RATE_HZ, SpokenSentence, transcript_of
 from core.actress.expression import manners
 from core.actress.performance import bundled_marker_units, frame_times_s, perform
 from core.actress.randomness import Chance
+from core.iface.heard_takes import HeardTake
 from core.iface.measures import nearness
 from core.motion.recording import Recording
 
@@ -43,3 +45,40 @@ def ceiling(takes: Sequence[np.ndarray], largest_mm: np.ndarray) -> float:
     if not pairs:
         raise ValueError("a ceiling needs two takes")
     return float(np.sqrt(max(0.0, np.mean([nearness(a, b, largest_mm).r for a, b in pairs]))))
+
+
+class Reached(NamedTuple):
+    """How far an estimate came, in one emotion.
+
+    ceiling : see `ceiling`; r : R of the estimate, mean over the same takes; share : r over the ceiling
+    """
+
+    ceiling: float
+    r: float
+    share: float
+
+
+def reached(
+    spoken: Sequence[np.ndarray], takes: Sequence[Sequence[HeardTake]], largest_mm: np.ndarray,
+    points: np.ndarray | None = None,
+) -> dict[str, Reached]:  # fmt: skip
+    """Measure estimates beside sentences that were said more than once, emotion by emotion.
+
+    spoken : displacements estimated for each sentence, mm
+    takes : the sentences, said once, said again, ...; frames count that are used every time
+    points : rows of the points to measure; all when None
+    """
+    chosen = np.arange(len(largest_mm)) if points is None else points
+    found = {}
+    for emotion in dict.fromkeys(take.emotion for take in takes[0]):
+        rows = [s for s, take in enumerate(takes[0]) if take.emotion == emotion]
+        used = [np.logical_and.reduce([said[s].used for said in takes]) for s in rows]
+        again = [
+            np.concatenate([said[s].displacements[u][:, chosen] for s, u in zip(rows, used)]).astype(float)
+            for said in takes
+        ]
+        estimated = np.concatenate([spoken[s][u][:, chosen] for s, u in zip(rows, used)]).astype(float)
+        top = ceiling(again, largest_mm[chosen])
+        r = float(np.mean([nearness(captured, estimated, largest_mm[chosen]).r for captured in again]))
+        found[emotion] = Reached(top, r, r / top if top > 0 else 0.0)
+    return found

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from core.actress.corpus import comparison_sentences, record
-from core.iface.ceiling import ceiling, said_again
+from core.iface.ceiling import ceiling, reached, said_again
+from core.iface.heard_takes import HeardTake
 from core.iface.measures import nearness
 
 
@@ -37,3 +38,27 @@ def test_with_the_sentences_own_seed_it_is_the_recording_of_the_corpus():
     other = said_again(spoken, "another seed")
     assert other.positions.shape == said.positions.shape and other.transcript == said.transcript
     assert 0.5 < np.nanmax(np.abs(other.positions - said.positions)) < 60.0
+
+
+def test_what_sound_tells_reaches_all_of_the_ceiling_emotion_by_emotion():
+    rng = np.random.default_rng(3)
+    told = [rng.normal(size=(4000, 3, 3)) for _ in range(4)]
+    noise = {"neutral": 0.2, "anger": 1.0}
+    emotions = ["neutral", "anger", "neutral", "anger"]
+
+    def say():
+        used = np.arange(4000) < 3900
+        takes = []
+        for moved, emotion in zip(told, emotions):
+            seen = moved + noise[emotion] * rng.normal(size=moved.shape)
+            seen[~used] = 1e3
+            takes.append(HeardTake("s", emotion, None, None, seen, used))
+        return takes
+
+    found = reached(told, [say(), say()], np.ones(3))
+    assert list(found) == ["neutral", "anger"]
+    for emotion, (top, r, share) in found.items():
+        assert top == pytest.approx(1 / np.sqrt(1 + noise[emotion] ** 2), abs=0.01)
+        assert r == pytest.approx(top, abs=0.01) and share == pytest.approx(r / top)
+    dull = [t + rng.normal(size=t.shape) for t in told]
+    assert all(row.share < 0.8 for row in reached(dull, [say(), say()], np.ones(3), np.array([0, 2])).values())
