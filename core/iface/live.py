@@ -60,7 +60,7 @@ class LiveFace:
         lowest, highest = RATES_HZ
         if not lowest <= rate_hz <= highest:
             raise UserFacingError(
-                f"The sound has a rate of {rate_hz:g} Hz.", f"Rates from {lowest} to {highest} Hz can be heard."
+                f"The sound has a rate of {rate_hz} Hz.", f"Rates from {lowest} to {highest} Hz can be heard."
             )
         self.face, self.rate_hz = face, rate_hz
         self._resampler = None

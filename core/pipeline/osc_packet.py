@@ -1,4 +1,4 @@
-"""One frame as Open Sound Control messages in the words of the VMC protocol, which Blender, Unity and VTuber tools hear.
+"""One frame as Open Sound Control messages in the words of the VMC protocol, which Blender and VTuber tools hear.
 
 OSC 1.0: strings end with zeros up to a multiple of 4 bytes, numbers are big-endian; a bundle is ``#bundle``, a time
 tag (1: at once) and messages with their lengths. VMC: ``/VMC/Ext/Blend/Val name value`` for each blendshape, then
