@@ -27,6 +27,7 @@ from app.panels.status import StatusLine
 from app.panels.timeline.bar import TimelinePane
 from app.panels.timeline.timeline import Timeline
 from app.panels.video import VideoPane
+from app.texts import poses as pose_texts
 from app.theme import apply_theme
 from app.versions import Versions
 from core.document.change import Change
@@ -195,8 +196,8 @@ class MainWindow(AskingWindow):
         answer = QMessageBox.question(self, texts.APPLICATION, texts.EXPORT_IS_RUNNING)
         return answer == QMessageBox.StandardButton.Yes
 
-    def _gives_up_edits(self, why: str) -> bool:
-        box = QMessageBox(QMessageBox.Icon.Warning, texts.APPLICATION, texts.CLOSE_UNSAVED.format(why=why), parent=self)
+    def _gives_up(self, what: str) -> bool:
+        box = QMessageBox(QMessageBox.Icon.Warning, texts.APPLICATION, what, parent=self)
         close = box.addButton(texts.CLOSE_ANYWAY, QMessageBox.ButtonRole.DestructiveRole)
         keep = box.addButton(texts.KEEP_OPEN, QMessageBox.ButtonRole.RejectRole)
         box.setDefaultButton(keep)
@@ -239,7 +240,10 @@ class MainWindow(AskingWindow):
             event.ignore()
             return
         unsaved = self.keeper.last_save_refused()
-        if unsaved and not self._gives_up_edits(unsaved):
+        if unsaved and not self._gives_up(texts.CLOSE_UNSAVED.format(why=unsaved)):
+            event.ignore()
+            return
+        if self.key_poses.has_unsaved_poses and not self._gives_up(pose_texts.CLOSE_UNSAVED):
             event.ignore()
             return
         self._save_layout()

@@ -130,7 +130,7 @@ def open_window(qtbot, qapp, settings_folder, monkeypatch):
     for window in opened:
         # a question that nobody answers would stand for ever
         monkeypatch.setattr(window, "_gives_up_export", lambda: True)
-        monkeypatch.setattr(window, "_gives_up_edits", lambda why: True)
+        monkeypatch.setattr(window, "_gives_up", lambda why: True)
         window.close()
         window.deleteLater()
     qapp.processEvents()

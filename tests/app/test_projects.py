@@ -292,7 +292,7 @@ def test_a_disk_that_refuses_is_told_before_the_window_closes(working, monkeypat
         return answers.pop(0)
 
     monkeypatch.setattr(ProjectFile, "save", refuse)
-    monkeypatch.setattr(window, "_gives_up_edits", gives_up)
+    monkeypatch.setattr(window, "_gives_up", gives_up)
     assert not window.close() and window.isVisible() and window.keeper.file is not None
     assert window.close() and not window.isVisible()
     assert len(asked) == 2 and all("The disk is full." in why for why in asked)
@@ -300,5 +300,5 @@ def test_a_disk_that_refuses_is_told_before_the_window_closes(working, monkeypat
 
 def test_a_disk_that_takes_everything_asks_nothing(working, monkeypatch):
     window = working()
-    monkeypatch.setattr(window, "_gives_up_edits", lambda why: pytest.fail(why))
+    monkeypatch.setattr(window, "_gives_up", lambda why: pytest.fail(why))
     assert window.close()

@@ -296,6 +296,11 @@ class KeyPosesWindow(QWidget):
         for button in (self.remove_button, self.guess_button, self.reset_button, self.save_button):
             button.setEnabled(is_one)
 
+    @property
+    def has_unsaved_poses(self) -> bool:
+        """Whether closing for good would lose key lip shapes."""
+        return bool(self.draft.posing.keys) and not self.draft.undo_stack.isClean()
+
     def shut_down(self) -> None:
         """Stop all jobs and free the views, for good; the main window closes."""
         self.authoring.document.changed.disconnect(self.on_document_changed)

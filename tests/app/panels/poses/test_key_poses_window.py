@@ -263,3 +263,23 @@ def test_the_frame_at_the_playhead_becomes_a_shape(animated, qtbot, monkeypatch)
         np.testing.assert_allclose(window.draft.posing.poses.lips_mm[-1], motion.displacements[frame, lips])
     assert window.draft.posing.keys == ("lips1", "lips2") and window.row == 1
     assert "rest" in window.status.note  # no face to guess with
+
+
+def test_the_main_window_asks_before_it_loses_poses(found, monkeypatch):
+    main, asked, answers = found.parent(), [], [False, True]
+
+    def gives_up(what):
+        asked.append(what)
+        return answers.pop(0)
+
+    monkeypatch.setattr(main, "_gives_up", gives_up)
+    drag(found.controls.sliders["jawOpen"], 0.3, 0.5)
+    assert not main.close() and main.isVisible() and found.draft.posing.keys
+    assert main.close() and not main.isVisible()
+    assert len(asked) == 2 and all("lip shapes are not saved" in what for what in asked)
+
+
+def test_poses_as_they_were_saved_close_without_a_word(found, monkeypatch):
+    main = found.parent()
+    monkeypatch.setattr(main, "_gives_up", lambda what: pytest.fail(what))
+    assert main.close()
