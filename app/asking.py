@@ -15,6 +15,7 @@ from app.project_keeper import ProjectKeeper
 from app.settings import last_folder, remember_folder, window_settings
 from core.document.parts import FaceChoice, ReferenceVideo
 from core.document.project_file import SUFFIX
+from core.face.face_file import FACE_SUFFIX
 
 _DATABASE_SUFFIXES = (".h5", ".hdf5")
 _FACE_SUFFIXES = (".obj", ".ply", ".glb", ".gltf", ".npz")
@@ -134,7 +135,7 @@ class AskingWindow(QMainWindow):
     def _open_face(self, path: Path) -> None:
         """A mesh alone does not tell where markers sit; ask for that file when it is not beside the mesh."""
         face = face_beside_markers(path)
-        if face.marker_file is None:
+        if face.marker_file is None and path.suffix.lower() != FACE_SUFFIX:
             markers = self._ask_file("face", texts.OPEN_MARKERS.format(face=path.name), texts.FILTER_MARKERS)
             face = FaceChoice(face.name, None if markers is None else str(markers))
         self.authoring.set_face(face)

@@ -16,6 +16,7 @@ from core.errors import UserFacingError
 from core.face.characters import CHARACTERS, DEFAULT
 from core.face.default_face import character_face
 from core.face.face import Face
+from core.face.face_file import FACE_SUFFIX
 from core.face.lip_contact import LipContact
 from core.face.mesh_files import face_of
 from core.face.moving_parts import MovingParts
@@ -107,7 +108,7 @@ def drawable(
             for n, name in enumerate(names)
         ))  # fmt: skip
     rig = rig_named(face, key_poses, progress)
-    if rig is not None and (face.name not in CHARACTERS or key_poses is not None):
+    if rig is not None and (not _has_our_markers(rig.face) or key_poses is not None):
         return ControlledFace(rig, None if key_poses is None else load_key_poses(key_poses))
     marker_file = None if face.marker_file is None else Path(face.marker_file)
     return FaceRig.of(face.name, markers, marker_file, progress)
@@ -118,6 +119,8 @@ def rig_named(face: FaceChoice, key_poses: Path | None = None, progress: Progres
     if face.name in CHARACTERS or key_poses is not None or Path(face.name).is_dir():
         return load_rig(face.name, progress)
     path = Path(face.name)
+    if path.suffix.lower() == FACE_SUFFIX:
+        return load_rig(face.name, progress)
     if path.suffix.lower() in GLTF_SUFFIXES and face.marker_file is None:
         mesh, shapes = read_gltf_shapes(path)
         if shapes:
@@ -132,8 +135,12 @@ def rig_controls(motion: MarkerMotion, rig: Rig | None, key_poses: KeyPoses | No
     """
     if rig is not None and key_poses is not None:
         return posed_controls(key_poses, rig, motion)
-    is_ours = rig is not None and rig.face.name in CHARACTERS
+    is_ours = rig is not None and _has_our_markers(rig.face)
     return controls_of_motion(motion, rig.face if is_ours else character_face(DEFAULT))
+
+
+def _has_our_markers(face: Face) -> bool:
+    return face.name in CHARACTERS or face.is_kin
 
 
 def one_rig(face: FaceChoice, key_poses: Path | None, for_file: Path) -> Rig:

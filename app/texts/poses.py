@@ -25,7 +25,7 @@ CHARACTER_TIP = (
     "The character that is posed; a rig of your own is a .glb or .gltf file with morph targets, or OBJ files"
 )
 RIG_FILE = "Rig file…"
-FILTER_RIG = "Rigs (*.glb *.gltf *.obj);;All files (*)"
+FILTER_RIG = "Rigs (*.glb *.gltf *.obj *.npz);;All files (*)"
 
 CONTROLS = "CONTROLS"
 SEARCH = "search, as in jaw or smile"

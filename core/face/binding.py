@@ -21,14 +21,14 @@ def bind(face: Face, marker_set: MarkerSet, placement: MarkerPlacement | None = 
     """Return the vertex of ``face`` under each marker; int, shape (K,), all different, all on the skin.
 
     placement : the user's own marker file for this face; its markers stay where it puts them. Without one, the
-        actress's markers on our own characters, who share their vertices, come from their table.
+        actress's markers on our own characters and their kin, who share their vertices, come from their table.
 
     All other markers are carried over: a similarity fit on the points both sides know (landmarks, and markers of the
     file), refined by a thin-plate spline through them, then the nearest free vertex, with markers of the groups
     ``upper_lip`` and ``lower_lip`` kept on their own lip. Raises `UserFacingError` when fewer than four points
     are known on both sides, or a file names vertices that the face has not.
     """
-    if placement is None and face.name in CHARACTERS:
+    if placement is None and (face.name in CHARACTERS or face.is_kin):
         table = load_marker_file(ACTRESS_FILE)
         if set(marker_set.names) <= set(table.names):
             placement = table

@@ -30,6 +30,8 @@ class Face:
     look : colours and marks of age
     masks : what is painted where, name to float32, shape (n_vertices,): ``lips`` 0..1, ``hair`` the distance from the
         hairline in mm, positive under the hair. None of them where unknown
+    is_kin : whether its vertices are those of our characters, so that the actress's markers sit on the same
+    texture : uint8, shape (h, w, 3), sRGB, top row first, for ``uv``, or None
     """
 
     name: str
@@ -42,6 +44,8 @@ class Face:
     credit: str = ""
     look: Look = field(default_factory=Look)
     masks: Mapping[str, np.ndarray] = field(default_factory=dict)
+    is_kin: bool = False
+    texture: np.ndarray | None = None
 
     def vertices_of(self, part: str) -> np.ndarray:
         """Return the vertices of ``part``, int, ascending; empty if the face has none."""

@@ -14,7 +14,9 @@ from core.errors import UserFacingError
 from core.face.face import PARTS, Face
 from core.face.look import Look
 
+FACE_SUFFIX = ".npz"
 FORMAT = 2
+MOST_TEXELS = 3 * 8192 * 8192
 UNREADABLE = (OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile, zlib.error)
 
 
@@ -37,6 +39,8 @@ def save_face(face: Face, path: Path) -> None:
         look=np.str_(json.dumps(face.look.as_dict())),
         mask_names=np.array(list(face.masks), np.str_),
         masks=np.array(list(face.masks.values()), np.float32).reshape(len(face.masks), len(face.positions)),
+        is_kin=np.bool_(face.is_kin),
+        **({} if face.texture is None else {"texture": face.texture}),
     )
 
 
@@ -75,6 +79,9 @@ def read_face(path: Path) -> Face:
             credit=str(data["credit"]),
             look=Look.from_dict(json.loads(str(data["look"]))),
             masks=dict(zip(data["mask_names"].tolist(), data["masks"])),
+            # files of our characters were written before these two
+            is_kin=bool(data.get("is_kin", False)),
+            texture=data.get("texture"),
         )
     except UNREADABLE as error:
         raise UserFacingError(f"{path} is not a readable face file.") from error
@@ -95,6 +102,12 @@ def _check(face: Face, path: Path) -> None:
         and all(0 <= number < count for number in numbers)
         and all(unit.shape == (count, 3) and np.isfinite(unit).all() for unit in face.units.values())
         and all(mask.shape == (count,) and np.isfinite(mask).all() for mask in face.masks.values())
+        and (face.uv is None or (face.uv.shape == (count, 2) and np.isfinite(face.uv).all()))
+        and (face.texture is None or _is_picture(face.texture))
     )
     if not sound:
         raise UserFacingError(f"{path} is damaged: its arrays do not belong together.")
+
+
+def _is_picture(texture: np.ndarray) -> bool:
+    return texture.dtype == np.uint8 and texture.ndim == 3 and texture.shape[2] == 3 and 0 < texture.size <= MOST_TEXELS

@@ -9,6 +9,7 @@ import numpy as np
 
 from core.errors import UserFacingError
 from core.face.face import Face
+from core.face.face_file import FACE_SUFFIX, read_face
 from core.face.marker_placement import load_marker_file
 from core.face.mesh_parts import guess_parts
 from core.face.mesh_readers import RawMesh, read_mesh
@@ -22,6 +23,8 @@ HEAD_MM = 300.0
 def load_face(path: Path, marker_file: Path | None = None) -> Face:
     """Read a face from a mesh file; x must point to the character's left, y up and z forward.
 
+    A ``.npz`` file is a face that was fitted to a scan and saved; it knows its markers.
+
     marker_file : a CSV as `load_marker_file` reads it; its ``landmark`` column tells the face's landmarks
     returns : positions in mm, whatever unit the file is in (see `guess_unit_mm`), vertices numbered as in the file
 
@@ -29,6 +32,8 @@ def load_face(path: Path, marker_file: Path | None = None) -> Face:
     that the mesh has not.
     """
     path = Path(path)
+    if path.suffix.lower() == FACE_SUFFIX:
+        return read_face(path)
     return face_of(read_mesh(path), path, marker_file)
 
 

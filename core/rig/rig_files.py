@@ -9,6 +9,7 @@ import numpy as np
 from core.errors import UserFacingError
 from core.face.characters import CHARACTERS
 from core.face.default_face import character_face
+from core.face.face_file import FACE_SUFFIX, read_face
 from core.face.mesh_files import face_of
 from core.face.mesh_readers import RawMesh, read_mesh
 from core.progress import SILENT, Progress
@@ -23,8 +24,8 @@ GLTF_SUFFIXES = (".gltf", ".glb")
 def load_rig(name: str, progress: Progress = SILENT) -> Rig:
     """Return the rig that ``name`` means.
 
-    name : one of `core.face.characters.CHARACTERS` with its 52 ARKit units; a glTF or GLB file with morph targets; or
-        a folder of OBJ files of equal topology, one of them the neutral face (its name holds ``neutral``, ``basis``,
+    name : one of `core.face.characters.CHARACTERS` with its 52 ARKit units; a glTF or GLB file with morph targets; a
+        face file, of a face fitted to a scan; or a folder of OBJ files of equal topology, one of them the neutral face (its name holds ``neutral``, ``basis``,
         ``base``, ``rest`` or ``default``), each other one a shape named as its file
 
     Files hold x to the character's left, y up, z forward; their unit is guessed as for other faces. Raises
@@ -33,6 +34,8 @@ def load_rig(name: str, progress: Progress = SILENT) -> Rig:
     if name in CHARACTERS:
         return Rig.of(with_room_for_teeth(character_face(name, progress)))
     path = Path(name)
+    if path.suffix.lower() == FACE_SUFFIX:
+        return Rig.of(with_room_for_teeth(read_face(path)))
     if path.suffix.lower() in GLTF_SUFFIXES:
         mesh, shapes = read_gltf_shapes(path)
     elif path.is_dir():

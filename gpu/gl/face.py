@@ -48,6 +48,7 @@ class FaceRenderer:
         # made with the first face, as working it out takes a while
         self._grain: moderngl.Texture3D | None = None
         self._picture: moderngl.Texture | None = None
+        self._own_picture: moderngl.Texture | None = None
         self._face: Face | None = None
         # how much light reaches each vertex of the face at rest, 0..1
         self.light: np.ndarray | None = None
@@ -108,6 +109,7 @@ class FaceRenderer:
         self._mesh += [places, surfaces, hairs, uvs, indices, self._hidden_edges]
 
         self._face = face
+        self._own_picture = None if face.texture is None else self._uploaded(face.texture)
         self.set_positions(rest)
 
     @property
@@ -135,20 +137,15 @@ class FaceRenderer:
     def set_texture(self, picture: np.ndarray | None) -> None:
         """Paint the face of the style `Style.TEXTURED` with a picture by its texture coordinates.
 
-        picture : uint8, shape (height, width, 3), sRGB, top row first; None: the procedural skin. It stays for other
-        faces until it is replaced; a face without texture coordinates keeps its procedural skin
+        picture : uint8, shape (height, width, 3), sRGB, top row first; None: the face's own texture, else the
+        procedural skin. It stays for other faces until it is replaced; a face without texture coordinates keeps its
+        procedural skin
         """
         if self._picture is not None:
             self._picture.release()
             self._picture = None
         if picture is not None:
-            if picture.ndim != 3 or picture.shape[2] != 3 or picture.dtype != np.uint8:
-                raise ValueError(f"a texture is uint8 of shape (height, width, 3), not {picture.dtype} {picture.shape}")
-            height, width = picture.shape[:2]
-            # texture coordinates count upwards, pictures downwards
-            self._picture = self._ctx.texture((width, height), 3, picture[::-1].tobytes(), alignment=1)
-            self._picture.build_mipmaps()
-            self._picture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
+            self._picture = self._uploaded(picture)
 
     def set_markers(
         self, positions: np.ndarray, colours: np.ndarray | None = None, links: np.ndarray | None = None
@@ -243,8 +240,9 @@ class FaceRenderer:
             self._wire_array.render()
             return True
         self._grain.use(0)
-        if self._picture is not None:
-            self._picture.use(1)
+        picture = self._picture or self._own_picture
+        if picture is not None:
+            picture.use(1)
         view, projection = _matrices(camera, size)
         return self._surfaces.draw(self._texture_mode(style), view, projection, size, new_at_most)
 
@@ -259,11 +257,24 @@ class FaceRenderer:
     def _texture_mode(self, style: Style) -> int:
         if style is not Style.TEXTURED:
             return 0
-        return 1 if self._picture is None or self._face.uv is None else 2
+        return 1 if (self._picture or self._own_picture) is None or self._face.uv is None else 2
+
+    def _uploaded(self, picture: np.ndarray) -> moderngl.Texture:
+        if picture.ndim != 3 or picture.shape[2] != 3 or picture.dtype != np.uint8:
+            raise ValueError(f"a texture is uint8 of shape (height, width, 3), not {picture.dtype} {picture.shape}")
+        height, width = picture.shape[:2]
+        # texture coordinates count upwards, pictures downwards
+        made = self._ctx.texture((width, height), 3, picture[::-1].tobytes(), alignment=1)
+        made.build_mipmaps()
+        made.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
+        return made
 
     def _free_mesh(self) -> None:
         for thing in self._mesh:
             thing.release()
+        if self._own_picture is not None:
+            self._own_picture.release()
+            self._own_picture = None
         self._mesh = []
         self._face = None
 
