@@ -29,9 +29,12 @@ def run_apart(work: Callable[..., Any], arguments: tuple, progress: Progress, di
 
     work : a function that a fresh interpreter can import; arguments and answer travel pickled
     died : what to say if the process ends without an answer, as when the system runs out of memory
+    A daemonic process, as a worker of a cluster is, may have no children: it does the work itself.
     Raises `UserFacingError` and `OSError` as ``work`` does, `ChildFailure` for any other exception, and whatever
     ``progress.step`` raises, which is called every 50 ms at least.
     """
+    if multiprocessing.current_process().daemon:
+        return work(*arguments, progress)
     context = multiprocessing.get_context("spawn")
     hears, tells = context.Pipe(duplex=False)
     process = context.Process(target=_work, args=(work, arguments, tells), daemon=True)

@@ -80,3 +80,21 @@ def test_a_cancel_does_not_wait_for_the_work():
         run_apart(sleep, (60,), Recorded(cancel_after_s=0.3), DIED)
     assert time.monotonic() - began_s < 10
     assert set(multiprocessing.active_children()) <= set(others)
+
+
+def answer_as_a_worker(tells):
+    tells.send((run_apart(tell_and_answer, ("words",), SILENT, DIED), os.getpid()))
+
+
+def test_a_worker_that_may_have_no_children_does_the_work_itself():
+    context = multiprocessing.get_context("spawn")
+    hears, tells = context.Pipe(duplex=False)
+    worker = context.Process(target=answer_as_a_worker, args=(tells,), daemon=True)
+    worker.start()
+    assert hears.poll(60)
+    (answer, worked), itself = hears.recv()
+    worker.join()
+    hears.close()
+    tells.close()
+    worker.close()
+    assert answer == "words" and worked == itself
