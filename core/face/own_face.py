@@ -14,6 +14,7 @@ from scipy.sparse import csr_matrix
 from scipy.spatial import cKDTree
 
 from core.errors import UserFacingError
+from core.face.characters import CHARACTERS
 from core.face.face import Face
 from core.face.look import Look
 from core.face.own_face_closing import close, vertex_normals
@@ -111,8 +112,10 @@ def fit_own_face(
         raise UserFacingError("The face could not be fitted to these points.", "Look whether one of them is far off.")
     positions, frames = place_parts(generic, protected, fitted)
     progress.step(0.85, "carrying the shapes along")
-    face = replace(generic, name=name or scan.name, positions=positions.astype(np.float32), units={},
-                   masks=dict(generic.masks), look=generic.look, credit=f"{generic.credit}; fitted to {scan.name}")  # fmt: skip
+    face = replace(
+        generic, name=name or scan.name, positions=positions.astype(np.float32), units={},
+        credit=f"{generic.credit}; fitted to {scan.name}", is_kin=generic.is_kin or generic.name in CHARACTERS,
+    )  # fmt: skip
     face = replace(face, units=carried_shapes(generic, frames, face))
     progress.step(0.95, "measuring what is left")
     after = _distance(generic, positions[protected.surface], protected, surface, anchors, targets)

@@ -7,7 +7,8 @@ In each round every vertex that a scan may pull looks for the nearest place of i
 t_i is the way to the scan's tangent plane there, a_i the vertex's area, Δ the cotangent Laplacian of the resting face,
 and ℓ, a length in mm that falls from round to round, how far a pull reaches (the stiffness of Amberg, Romdhani and
 Vetter, "Optimal Step Nonrigid ICP Algorithms for Surface Registration", 2007, as a length). w_i is Tukey's weight of
-the distance, and 0 for places that are too far, look another way, or lie on the rim of a hole. P_k are the clicked points.
+the distance, and 0 for places that are too far, look another way, or lie on the rim of a hole. P_k are the clicked
+points.
 """
 
 from __future__ import annotations
@@ -61,7 +62,9 @@ def close(
     upper, lower = protected.pairs.T
     rows = np.arange(len(upper))
     shape = len(upper), len(warped)
-    contact = csr_matrix((np.ones(len(rows)), (rows, upper)), shape) - csr_matrix((np.ones(len(rows)), (rows, lower)), shape)
+    contact = csr_matrix((np.ones(len(rows)), (rows, upper)), shape) - csr_matrix(
+        (np.ones(len(rows)), (rows, lower)), shape
+    )
     fixed = POINT_AREA_MM2 * anchors.T @ anchors + PAIR_AREA_MM2 * contact.T @ contact + HOLD * diags(areas)
     pulled = POINT_AREA_MM2 * anchors.T @ (targets - anchors @ warped)
     moved, weight = np.zeros_like(warped), np.zeros(len(warped))

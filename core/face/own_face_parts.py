@@ -13,8 +13,8 @@ MOUTH_PARTS = ("upper_teeth", "lower_teeth", "tongue")
 LASHES = tuple(part for part in PARTS if part.startswith("lashes"))
 LID_CLEARANCE_MM = 0.4
 LIDS_REACH = 1.35  # of the eyeball's radius: skin so near to its centre is lid
-NEIGHBOURS = 24
-ISOTROPY = 0.15  # how much a local frame would rather be a similarity
+NEIGHBOURS = 64
+ISOTROPY = 0.5  # how much a local frame would rather be a similarity
 
 
 def local_frames(rest: np.ndarray, fitted: np.ndarray, at: np.ndarray) -> np.ndarray:
@@ -103,7 +103,9 @@ def _ball_fit(ball: np.ndarray, surface: np.ndarray, fitted: np.ndarray) -> tupl
         off = goal - b
         length = np.maximum(np.linalg.norm(off, axis=1), 1e-9)
         slope = off / length[:, None]
-        step = np.linalg.solve(slope.T @ slope + 0.2 * len(lids) * np.diag([1.0, 1.0, 0.1]), slope.T @ (wanted - length))
+        step = np.linalg.solve(
+            slope.T @ slope + 0.2 * len(lids) * np.diag([1.0, 1.0, 0.1]), slope.T @ (wanted - length)
+        )
         goal = goal + step
     return scale, goal - scale * centre
 

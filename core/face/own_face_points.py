@@ -76,7 +76,8 @@ class PointFile:
         beyond = next((key for key, vertex in self.vertices.items() if vertex >= len(positions)), None)
         if beyond is not None:
             raise UserFacingError(
-                f"The point {beyond} is on vertex {self.vertices[beyond]}, but {name} has only {len(positions)} vertices."
+                f"The point {beyond} is on vertex {self.vertices[beyond]}, "
+                f"but {name} has only {len(positions)} vertices."
             )
         return dict(self.points) | {key: positions[vertex] for key, vertex in self.vertices.items()}
 

@@ -1,4 +1,4 @@
-"""Which of a generic face a scan may pull: skin that a scanner sees, and less of it where a scan is not to be trusted."""
+"""Which of a generic face a scan may pull: skin that a scanner sees, less of it where a scan is not to be trusted."""
 
 from __future__ import annotations
 
@@ -90,6 +90,7 @@ def _border(triangles: np.ndarray, inside: np.ndarray) -> np.ndarray:
 
 
 def open_rim(triangles: np.ndarray) -> np.ndarray:
+    """Return the vertices at edges that belong to one triangle only, int, ascending."""
     edges = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
     unique, uses = np.unique(edges, axis=0, return_counts=True)
     return np.unique(unique[uses == 1])

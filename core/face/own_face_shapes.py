@@ -47,4 +47,6 @@ def _shut_lips(generic: Face, fitted: Face, units: Mapping[str, np.ndarray]) -> 
     miss = scale * (before[upper] - before[lower]) - (now[upper] - now[lower])
     for axis in range(3):
         change = miss[:, axis] / 2
-        units[LIPS_TOGETHER][contact.vertices, axis] += contact.spread @ np.concatenate([change, -change]).astype(np.float32)
+        units[LIPS_TOGETHER][contact.vertices, axis] += contact.spread @ np.concatenate([change, -change]).astype(
+            np.float32
+        )

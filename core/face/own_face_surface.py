@@ -60,7 +60,9 @@ class Surface:
         blocks = [self._nearest(points[first : first + _BLOCK]) for first in range(0, len(points), _BLOCK)]
         if not blocks:
             blocks = [self._nearest(np.zeros((0, 3)))]
-        return Nearest(*(np.concatenate([getattr(block, name) for block in blocks]) for name in Nearest.__annotations__))
+        return Nearest(
+            *(np.concatenate([getattr(block, name) for block in blocks]) for name in Nearest.__annotations__)
+        )
 
     def _nearest(self, points: np.ndarray) -> Nearest:
         k = min(CANDIDATES, len(self.samples))

@@ -24,9 +24,10 @@ GLTF_SUFFIXES = (".gltf", ".glb")
 def load_rig(name: str, progress: Progress = SILENT) -> Rig:
     """Return the rig that ``name`` means.
 
-    name : one of `core.face.characters.CHARACTERS` with its 52 ARKit units; a glTF or GLB file with morph targets; a
-        face file, of a face fitted to a scan; or a folder of OBJ files of equal topology, one of them the neutral face (its name holds ``neutral``, ``basis``,
-        ``base``, ``rest`` or ``default``), each other one a shape named as its file
+    name : one of `core.face.characters.CHARACTERS` with its 52 ARKit units; a face file, of a face fitted to a scan; a
+        glTF or GLB file with morph targets; or a folder of OBJ files of equal topology, one of them the neutral face
+        (its name holds ``neutral``, ``basis``, ``base``, ``rest`` or ``default``), each other one a shape named as its
+        file
 
     Files hold x to the character's left, y up, z forward; their unit is guessed as for other faces. Raises
     `UserFacingError` for what is missing, damaged, without shapes, or of unequal topology.
