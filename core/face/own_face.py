@@ -19,11 +19,13 @@ from core.face.face import Face
 from core.face.look import Look
 from core.face.own_face_closing import close, vertex_normals
 from core.face.own_face_parts import place_parts
+from core.face.own_face_photo import PhotoCamera, fit_camera, photo_texture
 from core.face.own_face_points import feature_points, generic_points
 from core.face.own_face_protected import Protected
 from core.face.own_face_scan import Scan
 from core.face.own_face_shapes import carried_shapes
 from core.face.own_face_surface import Surface
+from core.face.own_face_texture import scan_texture, unwrapped
 from core.face.own_face_warp import LandmarkWarp, Placement, check_on_surface, doubtful_points, place_scan
 from core.progress import SILENT, Progress
 
@@ -54,7 +56,8 @@ class FitDistance:
 class OwnFace:
     """A fitted face.
 
-    face : ready to be saved; scan : in mm, as it lies on the face; placement : how it came there
+    face : with the generic skin; scan : in mm, as it lies on the face; placement : how it came there
+    uv : float32, shape (V, 2), coordinates without seams for a picture, see `core.face.own_face_texture.unwrapped`
     warped : the distance after the points alone; closed : at the end
     doubtful : keys of points that all others contradict; notes : sentences for the user
     """
@@ -62,6 +65,7 @@ class OwnFace:
     face: Face
     scan: Scan
     placement: Placement
+    uv: np.ndarray
     warped: FitDistance
     closed: FitDistance
     doubtful: tuple[str, ...]
@@ -126,12 +130,36 @@ def fit_own_face(
         listed = ", ".join(titles.get(key, key) for key in doubtful[:3])
         notes.append(f"Far from where the other points would have it: {listed}.")
     progress.step(1.0)
-    return OwnFace(face, placed, placement, before, after, doubtful, tuple(notes))
+    return OwnFace(face, placed, placement, unwrapped(generic), before, after, doubtful, tuple(notes))
 
 
-def bald(face: Face) -> Face:
-    """Return ``face`` without the generic hair, as the pictures and shape of a scan bring their own."""
-    return replace(face, look=Look(**{**face.look.as_dict(), "hair_mm": 0.0}))
+def painted(own: OwnFace, progress: Progress = SILENT) -> Face:
+    """Return the fitted face with the colours of its scan; as it is, where the scan has none."""
+    if not own.scan.has_colour:
+        return own.face
+    return _with_texture(own, scan_texture(own.face, own.uv, own.scan, progress=progress))
+
+
+def painted_by_photo(
+    own: OwnFace, photo: np.ndarray, pixels: Mapping[str, np.ndarray], points: Mapping[str, np.ndarray],
+    progress: Progress = SILENT,
+) -> tuple[Face, PhotoCamera]:  # fmt: skip
+    """Return the fitted face with the colours of a photo, and the camera that took it.
+
+    photo : uint8, shape (h, w, 3), top row first; pixels : points on it, key to shape (2,), x to the right and y down
+    points : the points on the scan, as they were given to `fit_own_face`
+
+    Raises `UserFacingError` as `core.face.own_face_photo.fit_camera` does.
+    """
+    places = {key: own.placement.apply(point) for key, point in points.items()}
+    camera = fit_camera(places, pixels, (photo.shape[1], photo.shape[0]))
+    return _with_texture(own, photo_texture(own.face, own.uv, photo, camera, progress=progress)), camera
+
+
+def _with_texture(own: OwnFace, texture: np.ndarray) -> Face:
+    # a picture of a head brings its own hair
+    look = Look(**{**own.face.look.as_dict(), "hair_mm": 0.0})
+    return replace(own.face, uv=own.uv, texture=texture, look=look)
 
 
 def _anchors(sources: np.ndarray, rest: np.ndarray, protected: Protected) -> csr_matrix:

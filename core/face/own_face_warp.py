@@ -18,7 +18,7 @@ DEEP_ENOUGH = 0.12  # the points' depth to their width, below which they say not
 FEWEST_FOR_AFFINE = 10
 SAME_PLACE = 0.005  # of the points' spread
 FAR_OFF = 0.02  # of the scan's size
-MISPLACED = 3.0  # of the robust spread of what a similarity leaves
+MISPLACED, MISPLACED_SHARE = 3.0, 0.3  # of what the similarity misses the other points by, and of the eyes' distance
 
 
 @dataclass(frozen=True)
@@ -91,24 +91,21 @@ def check_on_surface(points: Mapping[str, np.ndarray], away: Mapping[str, float]
 
 
 def doubtful_points(points: Mapping[str, np.ndarray], generic: Mapping[str, np.ndarray]) -> list[str]:
-    """Return the keys of points that lie far from where all others, smoothly, would have them; worst first.
+    """Return the keys of points that lie far from where a similarity of all others has them; worst first.
 
-    Each is left out in turn, and the others' similarity and bend predict it.
+    Faces differ by centimetres at the ears and less within the face, so a point is doubted from three tenths
+    of the distance of the eyes' outer corners on, where it also stands out among the others.
     """
     keys = [key for key in generic if key in points]
-    if len(keys) < FEWEST_FOR_AFFINE:
-        return []
     source = np.array([generic[key] for key in keys])
     target = np.array([points[key] for key in keys], float)
     miss = np.zeros(len(keys))
     for k in range(len(keys)):
         rest = np.arange(len(keys)) != k
         scale, rotation, shift = similarity(source[rest], target[rest])
-        moved = scale * source @ rotation.T + shift
-        warp = LandmarkWarp.of(moved[rest], target[rest])
-        miss[k] = np.linalg.norm(moved[k] + warp.displacement(moved[[k]])[0] - target[k])
-    limit = np.median(miss) + MISPLACED * 1.4826 * np.median(np.abs(miss - np.median(miss)))
-    limit = max(limit, 0.08 * float(np.ptp(target, axis=0).max()))
+        miss[k] = np.linalg.norm(scale * source[k] @ rotation.T + shift - target[k])
+    apart = float(np.linalg.norm(generic["outer_eye_left"] - generic["outer_eye_right"]))
+    limit = max(MISPLACED * float(np.median(miss)), MISPLACED_SHARE * apart)
     return [keys[k] for k in np.argsort(-miss) if miss[k] > limit]
 
 
