@@ -10,7 +10,7 @@ from app import texts
 from app.actions import frame_rate_options
 from app.project_menu import ProjectMenu
 from app.settings import window_settings
-from app.texts import curves, importing, poses
+from app.texts import compare, curves, importing, poses, units
 from core.speech.emotion import EMOTIONS
 
 if TYPE_CHECKING:
@@ -83,7 +83,9 @@ def _motion(window: MainWindow) -> None:
     )
     add(motion, "start_frame", texts.ACTION_START_FRAME, "", window.ask_start_frame)
     motion.addSeparator()
+    add(motion, "compare", compare.ACTION, "Ctrl+Shift+M", window.compare.open_now)
     add(motion, "key_poses", poses.ACTION, "", window.key_poses.open_now)
+    add(motion, "units", units.ACTION, "", window.units.open_now)
 
 
 def _map(window: MainWindow) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from app.figures import captured_figure, drawn_figure, units_figure
 from app.pictures import FaceRig
 from core.errors import UserFacingError
 from core.face.characters import CHARACTERS, DEFAULT
-from core.face.default_face import character_face
+from core.face.default_face import FaceUnavailable, character_face
 from core.face.face import Face
 from core.iface.coverage import covered_by_count
 from core.iface.keyframes import Keyframes
@@ -57,7 +58,9 @@ def run(job: UnitsJob, progress: Progress = SILENT) -> dict[str, object]:
     units = units_of_database(database, job.utterance, job.expression, removed)
     moved = spoken_deformations(database, removed)
     shares = covered_by_count({NEUTRAL: moved[NEUTRAL]} | {e: moved[e] for e in units.expressions}, job.utterance)
-    face = character_face(job.face, progress.part(0.2, 0.3))
+    face = None
+    with contextlib.suppress(FaceUnavailable):  # figures can be told without it
+        face = character_face(job.face, progress.part(0.2, 0.3))
     keyframes, missing = _keyframes(job, database, face, removed)
     names = (NEUTRAL, *units.expressions)
     every = np.concatenate([moved[name] for name in names])
@@ -114,10 +117,12 @@ def _check(job: UnitsJob, outputs: list[Path]) -> None:
 
 
 def _keyframes(
-    job: UnitsJob, database: MotionDatabase, face: Face, removed: frozenset[str]
+    job: UnitsJob, database: MotionDatabase, face: Face | None, removed: frozenset[str]
 ) -> tuple[Keyframes, tuple[str, ...]]:
     if job.keyframes == CAPTURED:
         return captured_keyframes(database, face, removed=removed)
+    if face is None:
+        face = character_face(job.face)
     keyframes = drawn_keyframes(face, database.markers)
     return keyframes, keyframes.names
 

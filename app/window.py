@@ -15,6 +15,7 @@ from app.emotion_colours import emotion_colours
 from app.garbage import MainThreadGarbage
 from app.icons import icon, renew_icons
 from app.menus import make_menus
+from app.panels.compare.window import CompareWindow
 from app.panels.control import WIDTH_PX, ControlPanel
 from app.panels.export_dialog import ExportDialog
 from app.panels.importing.window import ImportWindow
@@ -26,6 +27,7 @@ from app.panels.preview import PreviewPane
 from app.panels.status import StatusLine
 from app.panels.timeline.bar import TimelinePane
 from app.panels.timeline.timeline import Timeline
+from app.panels.units.window import UnitsWindow
 from app.panels.video import VideoPane
 from app.texts import poses as pose_texts
 from app.theme import apply_theme
@@ -61,6 +63,8 @@ class MainWindow(AskingWindow):
         self.export_dialog = ExportDialog(authoring, self.settings, self)
         self.importing = ImportWindow(authoring, self)
         self.key_poses = KeyPosesWindow(authoring, self)
+        self.compare = CompareWindow(authoring, self)
+        self.units = UnitsWindow(authoring, self)
         make_menus(self)
         self._join()
         self._restore_layout()
@@ -250,6 +254,8 @@ class MainWindow(AskingWindow):
         self.keeper.close()
         self.importing.shut_down()
         self.key_poses.shut_down()
+        self.compare.shut_down()
+        self.units.shut_down()
         self.authoring.shut_down()
         for pane in (self.motion, self.preview):
             pane.face_view.release()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
@@ -85,15 +86,17 @@ def captured_keyframes(
     sentences, so that its lips rest (without silences: in what it adds to neutral speech on average). Of these frames
     the quarter that goes farthest the way that all of them go is averaged.
 
-    face : draws what was not captured; without it such a keyframe is left out
+    face : draws what was not captured; without it, or where the markers cannot be laid on it, such a keyframe is left
+        out
     removed : public names of nodes that do not count
 
     Raises `UserFacingError` when nothing is left.
     """
     found = _captured(database, removed)
-    drawn = (
-        drawn_keyframes(face, database.markers) if face is not None and len(found) < len(paper_keyframes()) else None
-    )
+    drawn = None
+    if face is not None and len(found) < len(paper_keyframes()):
+        with contextlib.suppress(UserFacingError):  # markers that cannot be laid on the face
+            drawn = drawn_keyframes(face, database.markers)
     names = [name for name in paper_keyframes() if name in found or drawn is not None]
     if not names:
         raise UserFacingError(f"The database '{database.name}' shows none of the paper's keyframes.")
