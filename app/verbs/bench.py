@@ -199,6 +199,25 @@ def bench_window(
     _tell(answer, window_bench.as_table, json)
 
 
+@bench.command("live")
+def bench_live(
+    db: Database = None,
+    seconds: Annotated[float, typer.Option(min=20.0, help="How long to play.")] = 600.0,
+    json: Json = False,
+) -> None:
+    """Measure how late the live face is: a file played through PulseAudio, recorded again and animated; drop-outs."""
+    from app import live_bench
+    from app.live.opening import open_speaking_face
+    from core.actress.corpus import demo_sentences
+    from core.media.audio import load_audio
+
+    with progress_bar("bench") as progress:
+        _, face = open_speaking_face(db, progress.part(0.0, 0.2))
+        spoken = load_audio(demo_sentences()[0].audio)
+        answer = live_bench.bench_live(face, spoken, seconds, progress.part(0.2, 1.0))
+    _tell(answer, live_bench.as_table, json)
+
+
 def _open(path: Path | None, progress: Progress) -> MotionDatabase:
     from app.demo import open_named
 

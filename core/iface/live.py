@@ -92,6 +92,7 @@ class LiveFace:
         if not good.all():
             self.faulty += int((~good).sum())
             samples = np.where(good, samples, np.float32(0.0))
+        samples = np.clip(samples, -1.0, 1.0)  # as every recording of it will be
         self._n_samples += len(samples)
         if self._resampler is not None:
             samples = self._resampler.resample_chunk(samples)

@@ -19,7 +19,7 @@ REST = np.random.default_rng(3).normal(size=(6, 3)) * 20
 def sound(rate_hz, duration_s=1.5, seed=4):
     """Noise under a slow swell, so that features move."""
     rng, n = np.random.default_rng(seed), round(duration_s * rate_hz)
-    return (0.2 * rng.normal(size=n) * (1 + np.sin(np.arange(n) / rate_hz * 9))).astype(np.float32)
+    return (0.08 * rng.normal(size=n) * (1 + np.sin(np.arange(n) / rate_hz * 9))).astype(np.float32)
 
 
 def heard(live, samples, block):
