@@ -13,6 +13,7 @@ from app.verbs import databases, importing, measuring, motion, pipeline, speech,
 from app.verbs.animeme import train
 from app.verbs.bench import bench
 from app.verbs.growth import db
+from app.verbs.own_face import fit_face
 from core.errors import UserFacingError
 
 
@@ -51,6 +52,7 @@ app.command()(pipeline.lipsync)
 app.command()(pipeline.curves)
 app.command()(pipeline.poses)
 app.command()(units.units)
+app.command("fit-face")(fit_face)
 
 
 def main() -> None:
