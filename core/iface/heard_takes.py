@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from core.errors import UserFacingError
+from core.iface.noisy_hearing import heard_in_noises
 from core.iface.speech_features import RATE_HZ, speech_features
 from core.media.audio import Audio, audio_from_bytes, load_audio
 from core.motion.captured_sentence import CapturedSentence
@@ -26,6 +27,7 @@ class HeardTake:
     features : float32, shape (n_frames, 10), see `core.iface.speech_features`
     displacements : float32, shape (n_frames, n_markers, 3), mm from the neutral pose, head space
     used : bool, shape (n_frames,); False for what is heard around the others, and neither learned nor measured
+    in_noise : features of the same sound in noise, one array a noise; see `core.iface.noisy_hearing`
     """
 
     name: str
@@ -34,20 +36,25 @@ class HeardTake:
     features: np.ndarray
     displacements: np.ndarray
     used: np.ndarray
+    in_noise: tuple[np.ndarray, ...] = ()
 
     def __len__(self) -> int:
         return len(self.features)
 
 
-def database_takes(database: MotionDatabase, progress: Progress = SILENT) -> list[HeardTake]:
-    """Return the sentences that ``database`` is built of; raises `UserFacingError` for one without sound."""
+def database_takes(database: MotionDatabase, progress: Progress = SILENT, n_noises: int = 0) -> list[HeardTake]:
+    """Return the sentences that ``database`` is built of, each heard in ``n_noises`` noises besides.
+
+    Raises `UserFacingError` for one without sound.
+    """
     takes = []
     for s, sentence in enumerate(database.sentences):
         progress.step(s / len(database.sentences), f"listening to {sentence.name}")
         coefficients = database.frames[sentence.start_frame : sentence.stop_frame]
         if len(coefficients):
             audio = _kept_sound(database, sentence.name)
-            takes.append(_take(database, sentence, audio, coefficients, np.ones(len(coefficients), bool)))
+            take = _take(database, sentence, audio, coefficients, np.ones(len(coefficients), bool))
+            takes.append(replace(take, in_noise=heard_in_noises(audio, len(take), n_noises, s)))
     return takes
 
 
