@@ -1,0 +1,77 @@
+"""All words of the window in which a face is fitted to a scan. ``{names}`` are filled in."""
+
+from __future__ import annotations
+
+TITLE = "A face of one's own[*]"
+ACTION = "A &face of one's own…"
+
+POINTS = "FEATURE POINTS"
+POINTS_TIP = "Click each point on the scan; the ring on the generic face shows where it belongs. Delete takes one away"
+DONE = "{done} of {all}"
+NEEDED = "needed"
+SKIP = "Skip"
+SKIP_TIP = "Leave this point out and go on with the next one that is not set (Space)"
+REMOVE = "Remove"
+REMOVE_TIP = "Take the chosen point off the scan (Delete)"
+UNDO = "undo"
+UNDO_TIP = "Take the last change back (Ctrl+Z)"
+REDO = "redo"
+REDO_TIP = "Do it again (Ctrl+Shift+Z)"
+LOAD_POINTS = "Load points…"
+LOAD_POINTS_TIP = "Go on with points that were saved (Ctrl+L)"
+SAVE_POINTS = "Save points…"
+SAVE_POINTS_TIP = "Write the file that efase fit-face --points reads"
+
+SCAN = "SCAN"
+OPEN_SCAN = "Open scan…"
+OPEN_SCAN_TIP = "Open a scan or mesh of a head: OBJ, PLY, STL, glTF or GLB (Ctrl+O)"
+FILTER_SCAN = "Scans (*.obj *.ply *.stl *.glb *.gltf);;All files (*)"
+NO_SCAN = "Open a scan or mesh of a head, then click the points of the list on it."
+TURN_OVER = "tip"
+TURN_OVER_TIP = "Tip the scan by a quarter turn, for files whose up is another axis"
+TURN_ROUND = "turn"
+TURN_ROUND_TIP = "Turn the scan by a quarter turn about the upright"
+ON_SCAN = ("scan", "scan", "Click points on the scan")
+ON_PHOTO = ("photo", "photo", "Click the same points on a photo, to paint the face with it")
+OPEN_PHOTO = "Open photo…"
+OPEN_PHOTO_TIP = "Open a photo of the same person to paint the face with, in place of the scan's own colours"
+FILTER_PHOTO = "Pictures (*.png *.jpg *.jpeg);;All files (*)"
+NO_PHOTO = "Open a photo of the same person, seen from the front, and click at least six points on it."
+
+GENERIC = "GENERIC FACE"
+GENERIC_TIP = "Who is fitted; its look stays where the scan has no colours"
+SHOW_GENERIC = ("generic", "generic", "Show where the points belong; a click moves the chosen one there")
+SHOW_FITTED = ("fitted", "fitted", "Show the fitted face")
+SHOW_DISTANCE = ("distance", "distance", "Show what is left between face and scan: green nothing, red 2 mm and more")
+OPENING_GENERIC = "Opening the generic face"
+FIT = "Fit"
+FIT_TIP = "Fit the generic face to the points and the scan (Ctrl+Return)"
+FIT_NEEDS = "Set the points marked as needed first."
+SHAPE = "Shape"
+SHAPE_TIP = "Try one of the fitted face's shapes"
+SAVE_FACE = "Save face…"
+SAVE_FACE_TIP = "Write a face file, which --face and Open face take (Ctrl+S)"
+USE_FACE = "Use it"
+USE_FACE_TIP = "Show the saved face in the main window"
+FILTER_FACE = "Face files (*.npz);;All files (*)"
+FILTER_POINTS = "Feature points (*.json);;All files (*)"
+LEFT_OVER = "median {median:.2f} mm, 95 % within {p95:.2f} mm; {covered:.0%} of the skin seen"
+DOUBTFUL = "Look again at: {points}."
+SAVED_FACE = "Saved {path}; --face takes it"
+SAVED_POINTS = "Saved {path}"
+LOADED_POINTS = "Loaded {path}"
+
+READING_SCAN = "Reading the scan"
+READING_PHOTO = "Reading the photo"
+READING_POINTS = "Reading points"
+FITTING = "Fitting the face"
+SAVING = "Saving the face"
+POINTS_OFF = "Points of {path} that lie far off this scan were left out: {points}."
+
+# Edits, as Undo names them
+EDIT_PLACE = "Set {point}"
+EDIT_MOVE = "Move {point} on the generic face"
+EDIT_REMOVE = "Remove {point}"
+EDIT_LOAD = "Load points"
+EDIT_PHOTO = "Set {point} on the photo"
+CLOSE_UNSAVED = "The fitted face is not saved."
