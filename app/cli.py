@@ -9,11 +9,12 @@ import typer
 from typer.core import TyperGroup
 
 from app.terminal import clear_failures, end_on_signals, show_log
-from app.verbs import databases, importing, measuring, motion, pipeline, speech, units
+from app.verbs import databases, importing, live, measuring, motion, pipeline, speech, units
 from app.verbs.animeme import train
 from app.verbs.bench import bench
 from app.verbs.growth import db
 from app.verbs.own_face import fit_face
+from app.verbs.tracking import track
 from core.errors import UserFacingError
 
 
@@ -52,7 +53,9 @@ app.command()(pipeline.lipsync)
 app.command()(pipeline.curves)
 app.command()(pipeline.poses)
 app.command()(units.units)
+app.command()(live.live)
 app.command("fit-face")(fit_face)
+app.command()(track)
 
 
 def main() -> None:

@@ -44,9 +44,7 @@ class Flow:
     returned_px: np.ndarray
 
 
-def followed(
-    before: np.ndarray, now: np.ndarray, points: np.ndarray, guess: np.ndarray, levels: int = _LEVELS
-) -> Flow:
+def followed(before: np.ndarray, now: np.ndarray, points: np.ndarray, guess: np.ndarray, levels: int = _LEVELS) -> Flow:
     """Follow ``points``, shape (K, 2), from one picture to another, beginning the search at ``guess``.
 
     Each is followed forwards and, from where it arrives, backwards; trust falls with the distance at which it returns.

@@ -132,9 +132,7 @@ def _first(source: Iterator[Picture], request: TrackingRequest) -> Picture:
     return picture
 
 
-def _tracker(
-    model: FaceModel, placement: Placement, grey: np.ndarray, start: np.ndarray, shrink: float
-) -> FaceTracker:
+def _tracker(model: FaceModel, placement: Placement, grey: np.ndarray, start: np.ndarray, shrink: float) -> FaceTracker:
     """A tracker in the smaller pictures."""
     return FaceTracker(model, placement.shrunk(shrink), grey, start * shrink)
 

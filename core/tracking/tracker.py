@@ -124,7 +124,7 @@ class FaceTracker:
             seen, trust = step.points, _TRUST_BEFORE * step.trust
             seen, trust = _with_hand(seen, trust, corrections)
             fit = constrained(face, seen, trust, fit, self._prior).fit
-        anchored, anchor_trust = self._anchored(look, face, fit, levels)
+        anchored, anchor_trust, like = self._anchored(look, face, fit, levels)
         anchored, anchor_trust = _with_hand(anchored, anchor_trust, corrections)
         both = np.concatenate([seen, anchored]), np.concatenate([trust, anchor_trust])
         times = len(both[1]) // count
@@ -135,9 +135,8 @@ class FaceTracker:
         certain = np.clip(agreed / np.array([_TRUST_BEFORE, 1.0])[-times:, None], 0.0, 1.0).max(axis=0)
         certain = certain * within(points, look)
         drift = np.where(anchor_trust > 0.3, np.linalg.norm(anchored - points, axis=1), np.nan)
-        now = self._sheet.laid_out(look, points, self._moved(answer.fit))
         is_lost = (
-            certain.mean() < _FEWEST_SEEN or likeness(self._first, now, self._mask) < _LEAST_LIKE
+            certain.mean() < _FEWEST_SEEN or like < _LEAST_LIKE
             or not _is_possible(self.state.fit.affine, answer.fit.affine)
         )  # fmt: skip
         if is_lost and not is_sure:
@@ -146,8 +145,9 @@ class FaceTracker:
 
     def _anchored(
         self, look: np.ndarray, face: PosedUnits, fit: AffineFit, levels: int
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Where each point looks as it did when a hand last put it, near where ``fit`` has it; and its trust."""
+    ) -> tuple[np.ndarray, np.ndarray, float]:
+        """Where each point looks as it did when a hand last put it, near where ``fit`` has it; its trust; and how like
+        the first picture all of the face looks there."""
         expected, moved, on_sheet = fit.points(face), self._moved(fit), self._sheet.points
         now = self._sheet.laid_out(look, expected, moved)
         found, trust = expected.copy(), np.zeros(len(expected))
@@ -156,7 +156,7 @@ class FaceTracker:
             flow = followed(anchor.sheet, now, on_sheet[rows], on_sheet[rows], levels)
             found[rows] += (flow.points - on_sheet[rows]) @ moved[:, :2].T
             trust[rows] = flow.trust
-        return found, trust * within(found, look)
+        return found, trust * within(found, look), likeness(self._first, now, self._mask)
 
     def _by_hand(self, look: np.ndarray, face: PosedUnits, corrections: Mapping[int, np.ndarray]) -> TrackedFrame:
         """Take the word of a hand for where a lost face is."""
@@ -172,7 +172,7 @@ class FaceTracker:
             return None
         fit = self.state.fit
         shifted = _shifted(replace(fit, parameters=np.zeros_like(fit.parameters)), middle - self._middle_of_sheet(fit))
-        anchored, trust = self._anchored(look, face, shifted, _FAR_LEVELS)
+        anchored, trust, _ = self._anchored(look, face, shifted, _FAR_LEVELS)
         fresh = fresh_start(face, anchored, trust)
         starts = [shifted] if fresh is None else [shifted, fresh]
         frames = [self._fitted(look, face, None, start, {}, _FAR_LEVELS) for start in starts]

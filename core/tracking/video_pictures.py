@@ -23,6 +23,8 @@ MOST_FRAMES = 200_000
 _MICROSECONDS = 1_000_000
 _RATES_HZ = (1.0, 1000.0)
 _MOST_PIXELS = 1 << 26
+# Their first plane is the grey picture, a byte a pixel; converting takes longer than decoding.
+_LUMA_FIRST = {"gray", "nv12", "nv21", *(f"yuv{j}{n}p" for j in ("", "j") for n in ("420", "422", "440", "444"))}
 
 
 @dataclass(frozen=True)
@@ -169,8 +171,16 @@ def _decoded(container, stream, path) -> Iterator[av.VideoFrame]:
 
 
 def _grey(frame: av.VideoFrame, shrink: float) -> np.ndarray:
-    width, height = max(1, round(frame.width * shrink)), max(1, round(frame.height * shrink))
-    grey = frame.reformat(width=width, height=height, format="gray").to_ndarray()
+    import cv2
+
+    if frame.format.name in _LUMA_FIRST:
+        plane = frame.planes[0]
+        grey = np.frombuffer(plane, np.uint8).reshape(-1, plane.line_size)[: frame.height, : frame.width]
+    else:
+        grey = frame.reformat(format="gray").to_ndarray()
+    if shrink < 1.0:
+        width, height = max(1, round(frame.width * shrink)), max(1, round(frame.height * shrink))
+        grey = cv2.resize(grey, (width, height), interpolation=cv2.INTER_AREA)
     return np.ascontiguousarray(np.rot90(grey, round(frame.rotation / 90)))
 
 
