@@ -10,7 +10,7 @@ from app import texts
 from app.actions import frame_rate_options
 from app.project_menu import ProjectMenu
 from app.settings import window_settings
-from app.texts import compare, curves, importing, poses, units
+from app.texts import compare, curves, importing, live, own_face, poses, units
 from core.speech.emotion import EMOTIONS
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ def _file(window: MainWindow) -> None:
     add(file, "transcript", texts.OPEN_TRANSCRIPT, "Ctrl+T", window.ask_transcript)
     add(file, "emotions", texts.OPEN_EMOTIONS, "", window.ask_emotions)
     add(file, "face", texts.OPEN_FACE, "", window.ask_face)
+    add(file, "own_face", own_face.ACTION, "", lambda: window.own_face.open_now())
     add(file, "database", texts.OPEN_DATABASE, "Ctrl+D", window.ask_database)
     add(file, "demo_database", texts.OPEN_DEMO_DATABASE, "", authoring.open_database)
     add(file, "import", importing.ACTION, "Ctrl+I", window.importing.open_now)
@@ -86,6 +87,7 @@ def _motion(window: MainWindow) -> None:
     add(motion, "compare", compare.ACTION, "Ctrl+Shift+M", window.compare.open_now)
     add(motion, "key_poses", poses.ACTION, "", window.key_poses.open_now)
     add(motion, "units", units.ACTION, "", window.units.open_now)
+    add(motion, "live", live.ACTION, "Ctrl+Shift+F", window.live.open_now)
 
 
 def _map(window: MainWindow) -> None:

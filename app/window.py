@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QByteArray, QEvent, Qt
 from PySide6.QtWidgets import QApplication, QInputDialog, QMessageBox, QSplitter, QVBoxLayout, QWidget
@@ -21,6 +23,7 @@ from app.panels.export_dialog import ExportDialog
 from app.panels.importing.window import ImportWindow
 from app.panels.isomap import IsomapPane
 from app.panels.lexicon import LexiconDialog
+from app.panels.live.window import LiveWindow
 from app.panels.motion import MotionPane
 from app.panels.poses.window import KeyPosesWindow
 from app.panels.preview import PreviewPane
@@ -29,10 +32,15 @@ from app.panels.timeline.bar import TimelinePane
 from app.panels.timeline.timeline import Timeline
 from app.panels.units.window import UnitsWindow
 from app.panels.video import VideoPane
+from app.texts import live as live_texts
+from app.texts import own_face as own_face_texts
 from app.texts import poses as pose_texts
 from app.theme import apply_theme
 from app.versions import Versions
 from core.document.change import Change
+
+if TYPE_CHECKING:
+    from app.panels.own_face.window import OwnFaceWindow
 
 DEMO_START = "demo-neutral"
 HIGHEST_START_FRAME = 10**7
@@ -65,11 +73,19 @@ class MainWindow(AskingWindow):
         self.key_poses = KeyPosesWindow(authoring, self)
         self.compare = CompareWindow(authoring, self)
         self.units = UnitsWindow(authoring, self)
+        self.live = LiveWindow(authoring, self)
         make_menus(self)
         self._join()
         self._restore_layout()
         self._garbage = MainThreadGarbage(self)
         self.timeline.setFocus()  # so that Space plays from the start, and is not typed into the transcript
+
+    @cached_property
+    def own_face(self) -> OwnFaceWindow:
+        """The window in which a face is fitted to a scan, made when it is first asked for: few ever do."""
+        from app.panels.own_face.window import OwnFaceWindow
+
+        return OwnFaceWindow(self.authoring, self)
 
     # Making
 
@@ -130,6 +146,7 @@ class MainWindow(AskingWindow):
         control.face.face_asked.connect(self.ask_face)
         control.database.database_asked.connect(self.ask_database)
         self.video.save_button.clicked.connect(self.ask_save_film)
+        self.live.project_asked.connect(self.open_file)
         self.video.reference_asked.connect(self.ask_reference)
         authoring.document.changed.connect(self.on_document_changed)
         self.keeper.opened.connect(self._show_title)
@@ -250,12 +267,22 @@ class MainWindow(AskingWindow):
         if self.key_poses.has_unsaved_poses and not self._gives_up(pose_texts.CLOSE_UNSAVED):
             event.ignore()
             return
+        if self.live.has_unsaved_take and not self._gives_up(live_texts.CLOSE_UNSAVED):
+            event.ignore()
+            return
+        fits = self.__dict__.get("own_face")  # only where it was ever asked for
+        if fits is not None and fits.has_unsaved_face and not self._gives_up(own_face_texts.CLOSE_UNSAVED):
+            event.ignore()
+            return
         self._save_layout()
         self.keeper.close()
         self.importing.shut_down()
         self.key_poses.shut_down()
         self.compare.shut_down()
         self.units.shut_down()
+        self.live.shut_down()
+        if fits is not None:
+            fits.shut_down()
         self.authoring.shut_down()
         for pane in (self.motion, self.preview):
             pane.face_view.release()

@@ -113,6 +113,12 @@ class LiveSession:
         recorder = self._recorder
         return None if recorder is None else recorder.duration_s
 
+    @property
+    def recording_is_full(self) -> bool:
+        """Whether the recording takes no more."""
+        recorder = self._recorder
+        return recorder is not None and recorder.is_full
+
     def end_recording(self) -> Take | None:
         """Return what was recorded, None when nothing is; raises `UserFacingError` when it is next to nothing."""
         with self._lock:
