@@ -87,7 +87,7 @@ def _motion(window: MainWindow) -> None:
     add(motion, "compare", compare.ACTION, "Ctrl+Shift+M", window.compare.open_now)
     add(motion, "key_poses", poses.ACTION, "", window.key_poses.open_now)
     add(motion, "units", units.ACTION, "", window.units.open_now)
-    add(motion, "live", live.ACTION, "Ctrl+Shift+F", window.live.open_now)
+    add(motion, "live", live.ACTION, "Ctrl+Shift+F", lambda: window.live.open_now())
 
 
 def _map(window: MainWindow) -> None:

@@ -23,7 +23,6 @@ from app.panels.export_dialog import ExportDialog
 from app.panels.importing.window import ImportWindow
 from app.panels.isomap import IsomapPane
 from app.panels.lexicon import LexiconDialog
-from app.panels.live.window import LiveWindow
 from app.panels.motion import MotionPane
 from app.panels.poses.window import KeyPosesWindow
 from app.panels.preview import PreviewPane
@@ -40,6 +39,7 @@ from app.versions import Versions
 from core.document.change import Change
 
 if TYPE_CHECKING:
+    from app.panels.live.window import LiveWindow
     from app.panels.own_face.window import OwnFaceWindow
 
 DEMO_START = "demo-neutral"
@@ -73,7 +73,6 @@ class MainWindow(AskingWindow):
         self.key_poses = KeyPosesWindow(authoring, self)
         self.compare = CompareWindow(authoring, self)
         self.units = UnitsWindow(authoring, self)
-        self.live = LiveWindow(authoring, self)
         make_menus(self)
         self._join()
         self._restore_layout()
@@ -86,6 +85,15 @@ class MainWindow(AskingWindow):
         from app.panels.own_face.window import OwnFaceWindow
 
         return OwnFaceWindow(self.authoring, self)
+
+    @cached_property
+    def live(self) -> LiveWindow:
+        """The window in which the face speaks with a microphone, made when it is first asked for."""
+        from app.panels.live.window import LiveWindow
+
+        made = LiveWindow(self.authoring, self)
+        made.project_asked.connect(self.open_file)
+        return made
 
     # Making
 
@@ -146,7 +154,6 @@ class MainWindow(AskingWindow):
         control.face.face_asked.connect(self.ask_face)
         control.database.database_asked.connect(self.ask_database)
         self.video.save_button.clicked.connect(self.ask_save_film)
-        self.live.project_asked.connect(self.open_file)
         self.video.reference_asked.connect(self.ask_reference)
         authoring.document.changed.connect(self.on_document_changed)
         self.keeper.opened.connect(self._show_title)
@@ -267,7 +274,8 @@ class MainWindow(AskingWindow):
         if self.key_poses.has_unsaved_poses and not self._gives_up(pose_texts.CLOSE_UNSAVED):
             event.ignore()
             return
-        if self.live.has_unsaved_take and not self._gives_up(live_texts.CLOSE_UNSAVED):
+        live = self.__dict__.get("live")
+        if live is not None and live.has_unsaved_take and not self._gives_up(live_texts.CLOSE_UNSAVED):
             event.ignore()
             return
         fits = self.__dict__.get("own_face")  # only where it was ever asked for
@@ -280,7 +288,8 @@ class MainWindow(AskingWindow):
         self.key_poses.shut_down()
         self.compare.shut_down()
         self.units.shut_down()
-        self.live.shut_down()
+        if live is not None:
+            live.shut_down()
         if fits is not None:
             fits.shut_down()
         self.authoring.shut_down()
