@@ -151,7 +151,7 @@ def frames(
     """
     first, stop = span or (0, len(motion.positions))
     if style == "markers":
-        yield from _marker_pictures(motion, width, height, progress, background, first, stop)
+        yield from marker_pictures((motion,), width, height, progress, background, first, stop)
         return
     if rig is None:
         raise UserFacingError("There is no face to draw.", "Draw the markers, with --style markers.")
@@ -221,22 +221,28 @@ def _tiled(cells: list[np.ndarray], columns: int, width: int, height: int) -> np
     return picture
 
 
-def _marker_pictures(
-    motion: MarkerMotion, width: int, height: int, progress: Progress,
+def marker_pictures(
+    motions: Sequence[MarkerMotion], width: int, height: int, progress: Progress,
     background: tuple[float, float, float] | None, first: int, stop: int,
 ) -> Iterator[np.ndarray]:  # fmt: skip
+    """Yield one picture for each of the frames ``first`` to ``stop`` of ``motions``, which share it as faces do."""
     from gpu.gl.camera import Camera
     from gpu.gl.face import FaceRenderer, Style
     from gpu.gl.offscreen import OffscreenRenderer
 
-    rest = motion.markers.rest
-    camera = Camera.front(np.stack([rest.min(axis=0), rest.max(axis=0)]))
-    with OffscreenRenderer(width, height) as offscreen:
+    columns = n_columns(len(motions), width, height)
+    rests = [motion.markers.rest for motion in motions]
+    cameras = [Camera.front(np.stack([rest.min(axis=0), rest.max(axis=0)])) for rest in rests]
+    with OffscreenRenderer(width // columns, height // -(-len(motions) // columns)) as offscreen:
         renderer = FaceRenderer(offscreen.ctx)
         try:
             for f in range(first, stop):
                 progress.step((f - first) / (stop - first), "drawing")
-                renderer.set_markers(motion.positions[f])
-                yield offscreen.frame(functools.partial(_draw, renderer, camera, Style.MARKERS, background))
+                cells = []
+                for motion, camera in zip(motions, cameras):
+                    renderer.set_markers(motion.positions[f])
+                    draw = functools.partial(_draw, renderer, camera, Style.MARKERS, background)
+                    cells.append(offscreen.frame(draw))
+                yield cells[0] if len(motions) == 1 else _tiled(cells, columns, width, height)
         finally:
             renderer.release()

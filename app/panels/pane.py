@@ -151,6 +151,10 @@ class Pane(QWidget):
         self._bottom.setFixedHeight(4 * STEP)
         column.addWidget(self._bottom)
 
+    def hide_footer(self) -> None:
+        """Leave the room to the content."""
+        self._bottom.hide()
+
     def show_empty(self, text: str) -> None:
         """Show what to do next instead of the content."""
         self._empty.setText(text)
