@@ -9,6 +9,7 @@ import numpy as np
 
 from core.errors import UserFacingError
 from core.iface.heard_takes import HeardTake
+from core.iface.lessons import units_of
 from core.iface.measures import Nearness, largest_displacements, nearness
 from core.iface.motion_unit import NEUTRAL, PAPER_UTTERANCE, MotionUnits
 from core.iface.speaking import SpeakingFace
@@ -19,8 +20,10 @@ from core.progress import SILENT, Progress
 SHARE = 0.8  # of the data to train on, as the paper
 SEED = 2002
 GAP_S = 2.0
+PAPER_EXPRESSION_UNITS = 2
 
-Trainer = Callable[[Sequence[HeardTake], Progress], SpeakingFace]
+# Takes of displacements of these markers from their rest pose to a face.
+Trainer = Callable[[Sequence[HeardTake], MarkerSet, Progress], SpeakingFace]
 
 
 @dataclass(frozen=True)
@@ -93,18 +96,6 @@ def by_emotion(
     return found
 
 
-def units_of_takes(
-    takes: Sequence[HeardTake], n_utterance: int | float = PAPER_UTTERANCE, n_expression: int | float = 2
-) -> MotionUnits:
-    """Learn motion units from the frames that are used, as many as the paper's; see `MotionUnits.fit`."""
-    return MotionUnits.fit(
-        {
-            emotion: np.concatenate([t.displacements[t.used] for t in takes if t.emotion == emotion])
-            for emotion in dict.fromkeys(take.emotion for take in takes)
-        }, n_utterance, n_expression,
-    )  # fmt: skip
-
-
 def through_units(takes: Sequence[HeardTake], units: MotionUnits) -> list[HeardTake]:
     """Return ``takes`` as the paper's truth was: tracked by motion units, so that only what they span is left."""
     kept = [units.deformations(units.parameters(t.displacements, t.emotion), t.emotion) for t in takes]
@@ -128,9 +119,9 @@ class Compared:
 
 def compare(trainer: Trainer, part: Part, markers: MarkerSet, progress: Progress = SILENT) -> Compared:
     """Train on one half of ``part`` and measure on both; lengths that displacements are divided by are of the first."""
-    face = trainer(part.train, progress.part(0.0, 0.9))
+    face = trainer(part.train, markers, progress.part(0.0, 0.9))
     largest_mm = largest_displacements(np.concatenate([take.displacements[take.used] for take in part.train]))
-    units = units_of_takes(part.train)
+    units = units_of(part.train, PAPER_UTTERANCE, PAPER_EXPRESSION_UNITS)
     mouth = mouth_rows(markers)
     measured = []
     for i, takes in enumerate((part.train, part.test)):

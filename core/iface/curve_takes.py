@@ -13,6 +13,7 @@ from core.face.blendshape_drive import markers_of_blendshapes
 from core.face.marker_units import MarkerUnits
 from core.iface.heard_takes import HeardTake
 from core.iface.motion_unit import NEUTRAL
+from core.iface.noisy_hearing import heard_in_noises
 from core.iface.speech_features import RATE_HZ, speech_features
 from core.importing.survey import kinds_of
 from core.media.audio import load_audio
@@ -23,12 +24,13 @@ from core.speech.placing import placed_speech
 
 
 def curve_takes(
-    files: Sequence[Path], reading: CurveReading, units: MarkerUnits, progress: Progress = SILENT
+    files: Sequence[Path], reading: CurveReading, units: MarkerUnits, progress: Progress = SILENT, n_noises: int = 0
 ) -> list[HeardTake]:
     """Read curves of 30 frames a second and the sounds named like them; what is said is recognised, taken for English.
 
     Motion is that of the markers ``units`` keeps, mm, so that equations 6–8 are asked about points as on captures, and
-    not about the names that a studio gives its shapes. Frames in which no face was tracked are not used.
+    not about the names that a studio gives its shapes. Frames in which no face was tracked are not used. Each sound is
+    heard in ``n_noises`` noises besides.
 
     files : of weights, see `core.motion.shape_mapping.read_units`; every sound lies beside its curves or in
         ``reading.speech_folder``, ``take.wav`` to ``bs_value_take.npy``
@@ -48,7 +50,8 @@ def curve_takes(
         is_seen = np.isfinite(moved[:n_frames]).all(axis=(1, 2))
         displacements = np.nan_to_num(moved[:n_frames]).astype(np.float32)
         features = speech_features(audio, n_frames)
-        takes.append(HeardTake(take_name(file), NEUTRAL, transcript, features, displacements, is_seen))
+        noises = heard_in_noises(audio, n_frames, n_noises, f)
+        takes.append(HeardTake(take_name(file), NEUTRAL, transcript, features, displacements, is_seen, noises))
         stage.step(1.0, f"{file.name} heard")
     return takes
 

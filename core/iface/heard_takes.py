@@ -59,12 +59,12 @@ def database_takes(database: MotionDatabase, progress: Progress = SILENT, n_nois
 
 
 def recorded_takes(
-    database: MotionDatabase, recordings: Sequence[Recording], progress: Progress = SILENT
+    database: MotionDatabase, recordings: Sequence[Recording], progress: Progress = SILENT, n_noises: int = 0
 ) -> list[HeardTake]:
     """Return ``recordings`` as they would be in ``database``: head motion out, at its rate, through its components.
 
-    Long gaps are not used. The sound is that of the recording, or the one that the database keeps for it; raises
-    `UserFacingError` when there is none, or a marker of the database is missing.
+    Long gaps are not used. The sound is that of the recording, or the one that the database keeps for it, heard in
+    ``n_noises`` noises besides; raises `UserFacingError` when there is none, or a marker of the database is missing.
     """
     takes = []
     for r, recording in enumerate(recordings):
@@ -77,7 +77,8 @@ def recorded_takes(
         is_lost = seen.masked[np.floor(place).astype(int)] | seen.masked[np.ceil(place).astype(int)]
         sound = recording.audio
         audio = _kept_sound(database, recording.sentence) if sound is None else load_audio(sound)
-        takes.append(_take(database, recording, audio, database.pca.coefficients(face), ~is_lost))
+        take = _take(database, recording, audio, database.pca.coefficients(face), ~is_lost)
+        takes.append(replace(take, in_noise=heard_in_noises(audio, len(take), n_noises, r)))
     return takes
 
 

@@ -17,9 +17,9 @@ from core.iface.comparison import (
     split_by_frame,
     split_by_time,
     through_units,
-    units_of_takes,
 )
 from core.iface.heard_takes import database_takes, recorded_takes
+from core.iface.lessons import units_of
 from core.iface.measures import largest_displacements, nearness
 
 
@@ -49,7 +49,7 @@ def _with_one(features):
     return np.column_stack([features, np.ones(len(features))]).astype(float)
 
 
-def train(takes, progress):
+def train(takes, markers, progress):
     progress.step(1.0, "ridge")
     return RidgeFace(takes)
 
@@ -111,7 +111,7 @@ def test_frames_that_are_not_used_are_not_measured(takes):
 
 
 def test_what_motion_units_span_passes_through_them(takes):
-    units = units_of_takes(takes, 2, 2)
+    units = units_of(takes, 2, 2)
     once = through_units(takes, units)
     for take, again in zip(once, through_units(once, units)):
         np.testing.assert_allclose(again.displacements, take.displacements, atol=1e-4)
