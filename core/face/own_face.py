@@ -29,6 +29,7 @@ from core.face.own_face_texture import scan_texture, unwrapped
 from core.face.own_face_warp import LandmarkWarp, Placement, check_on_surface, doubtful_points, place_scan
 from core.progress import SILENT, Progress
 
+FEWEST_SURE = 7
 SEEN = 0.5  # share of the scan's pull from which a vertex counts where distances are told
 HEAD_REACH = 3.2  # of the outer eye distance from the points' middle: a scan may hold a whole body
 
@@ -59,7 +60,8 @@ class OwnFace:
     face : with the generic skin; scan : in mm, as it lies on the face; placement : how it came there
     uv : float32, shape (V, 2), coordinates without seams for a picture, see `core.face.own_face_texture.unwrapped`
     warped : the distance after the points alone; closed : at the end
-    doubtful : keys of points that all others contradict; notes : sentences for the user
+    doubtful : keys of points that all others contradict, worst first; they are left out while enough others stay
+    notes : sentences for the user
     """
 
     face: Face
@@ -92,6 +94,10 @@ def fit_own_face(
     progress.step(0.0, "placing the scan")
     known = generic_points(generic) if on_generic is None else dict(on_generic)
     placement = place_scan(points, known)
+    doubtful = doubtful_points({key: placement.apply(points[key]) for key in points}, known)
+    if doubtful and len(points) - len(doubtful) >= FEWEST_SURE:
+        points = {key: place for key, place in points.items() if key not in doubtful}
+        placement = place_scan(points, known, needs_all=False)
     placed = scan.placed(placement.scale, placement.rotation, placement.shift)
     keys = [key for key in known if key in points]
     targets = placement.apply([points[key] for key in keys])
@@ -124,13 +130,13 @@ def fit_own_face(
     progress.step(0.95, "measuring what is left")
     after = _distance(generic, positions[protected.surface], protected, surface, anchors, targets)
     notes = list(scan.notes)
-    doubtful = tuple(doubtful_points({key: place for key, place in zip(keys, targets)}, known))
     if doubtful:
         titles = {point.key: point.title for point in feature_points()}
         listed = ", ".join(titles.get(key, key) for key in doubtful[:3])
-        notes.append(f"Far from where the other points would have it: {listed}.")
+        left_out = "was left out" if doubtful[0] not in points else "is used all the same"
+        notes.append(f"Far from where the other points would have it, it {left_out}: {listed}.")
     progress.step(1.0)
-    return OwnFace(face, placed, placement, unwrapped(generic), before, after, doubtful, tuple(notes))
+    return OwnFace(face, placed, placement, unwrapped(generic), before, after, tuple(doubtful), tuple(notes))
 
 
 def painted(own: OwnFace, progress: Progress = SILENT) -> Face:

@@ -61,25 +61,45 @@ class Clickable:
     """The triangles of a face, ready to be hit by rays."""
 
     def __init__(self, positions: np.ndarray, triangles: np.ndarray) -> None:
-        a, b, c = np.asarray(positions, np.float32)[triangles].transpose(1, 0, 2)
-        self._a, self._ab, self._ac = a, b - a, c - a
+        corners = np.asarray(positions, np.float32)[triangles]
+        self._a, self._ab, self._ac = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        self._middle = corners.mean(axis=1)
+        self._radius = np.sqrt(np.square(corners - self._middle[:, None]).sum(axis=2).max(axis=1))
 
-    def hit(self, origin: np.ndarray, direction: np.ndarray) -> np.ndarray | None:
-        """Return the first place that a ray meets, shape (3,), or None (Möller and Trumbore 1997)."""
-        origin, direction = np.asarray(origin, np.float32), np.asarray(direction, np.float32)
-        p = np.cross(direction, self._ac)
-        determinant = np.einsum("ij,ij->i", self._ab, p)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            inverse = 1.0 / determinant
-            t = origin - self._a
-            u = np.einsum("ij,ij->i", t, p) * inverse
-            q = np.cross(t, self._ab)
-            v = q @ direction * inverse
-            away = np.einsum("ij,ij->i", self._ac, q) * inverse
-            met = (u >= -1e-6) & (v >= -1e-6) & (u + v <= 1 + 1e-6) & (away > 0) & np.isfinite(away)
-        if not met.any():
+    def hit(self, origin: np.ndarray, directions: np.ndarray, slit_mm: float = np.inf) -> np.ndarray | None:
+        """Return the place that the first of ``directions`` (n, 3), unit, meets, shape (3,), or None.
+
+        slit_mm : where it meets nothing, or something that lies so much deeper than what one of the other rays meets,
+            it went through a slit, as between lips or lids, and the nearest to it of the others decides
+        """
+        origin, rays = np.asarray(origin, np.float32), np.asarray(directions, np.float32)
+        # most triangles are nowhere near; the others' rays part by the length of the way times their spread
+        away = self._middle - origin
+        along = away @ rays[0]
+        spread = np.linalg.norm(rays - rays[0], axis=1).max()
+        off = np.linalg.norm(away - along[:, None] * rays[0], axis=1)
+        near = np.flatnonzero(off <= self._radius + spread * np.maximum(along, 0.0) + 1e-3)
+        depths = np.array([self._depth(origin, ray, near) for ray in rays])
+        front = depths.min()
+        if not np.isfinite(front):
             return None
-        return (origin + direction * away[met].min()).astype(float)
+        best = int(np.argmax(depths <= front + slit_mm)) if np.isfinite(slit_mm) else 0
+        if not np.isfinite(depths[best]):
+            return None
+        return (origin + rays[best] * np.float32(depths[best])).astype(float)
+
+    def _depth(self, origin: np.ndarray, ray: np.ndarray, near: np.ndarray) -> float:
+        """How far along a ray the first of some triangles is met; inf for none (Moeller and Trumbore 1997)."""
+        ab, ac, t = self._ab[near], self._ac[near], origin - self._a[near]
+        p = np.cross(ray, ac)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            inverse = 1.0 / np.einsum("ij,ij->i", ab, p)
+            u = np.einsum("ij,ij->i", t, p) * inverse
+            q = np.cross(t, ab)
+            v = q @ ray * inverse
+            depth = np.einsum("ij,ij->i", ac, q) * inverse
+            met = (u >= -1e-5) & (v >= -1e-5) & (u + v <= 1 + 1e-5) & (depth > 0) & np.isfinite(depth)
+        return float(depth[met].min()) if met.any() else np.inf
 
 
 def _split(scan: Scan) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:

@@ -34,16 +34,21 @@ class Placement:
         return self.scale * np.asarray(points, float) @ self.rotation.T + self.shift
 
 
-def place_scan(points: Mapping[str, np.ndarray], generic: Mapping[str, np.ndarray]) -> Placement:
+def place_scan(
+    points: Mapping[str, np.ndarray], generic: Mapping[str, np.ndarray], needs_all: bool = True
+) -> Placement:
     """Turn and shift a scan onto the generic face, and bring it to mm.
 
     points : on the scan, key to shape (3,), in its unit; generic : on the generic face, mm
+
+    needs_all : whether the points that are needed must all be there
 
     The unit is the one of mm, cm, inch, dm and m with which the outer corners of the eyes lie about 90 mm apart; of a
     scan in none of these, the size is the generic face's. Raises `UserFacingError` for points that are missing, lie in
     one place or on a line, or have left and right swapped.
     """
-    check_points(points)
+    if needs_all:
+        check_points(points)
     keys = [key for key in generic if key in points]
     source = np.array([points[key] for key in keys])
     target = np.array([generic[key] for key in keys])
@@ -60,7 +65,8 @@ def place_scan(points: Mapping[str, np.ndarray], generic: Mapping[str, np.ndarra
         raise UserFacingError(
             "Left and right of the points are swapped.", "The character's right side is at the left of the picture."
         )
-    apart = float(np.linalg.norm(points["outer_eye_left"] - points["outer_eye_right"]))
+    # as far apart as the corners of the eyes would be, whether these are among the points or not
+    apart = float(np.linalg.norm(generic["outer_eye_left"] - generic["outer_eye_right"])) / scale
     unit = min(UNITS_MM, key=lambda mm: abs(np.log(apart * mm / OUTER_EYES_MM)))
     if 1 / EYES_RATIO < apart * unit / OUTER_EYES_MM < EYES_RATIO:
         # turn about the points' middle, so that it stays where the generic face has it

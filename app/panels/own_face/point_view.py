@@ -18,6 +18,9 @@ from gpu.gl.face import Style
 
 CLICK_PX = 4.0
 _SEEN = 0.05
+# A click that goes through the slit between lips or lids takes what is beside it: how far, and how deep a slit is.
+_SLIT_PX, _SLIT = (2.0, 4.0), 0.012
+_AROUND = np.array([(0, -1), (0, 1), (-1, 0), (1, 0)], float)
 _ZOOM_PER_STEP, _STEP_ANGLE = 1.15, 120.0
 
 
@@ -75,10 +78,15 @@ class PointView(FaceView):
         aspect = self.width() / max(self.height(), 1)
         view = camera.view(aspect)
         half = np.tan(np.radians(camera.fov_deg) / 2)
-        x, y = 2 * at.x() / self.width() - 1, 1 - 2 * at.y() / self.height()
+        # the nearest of the others comes first among equals
+        around = np.vstack([np.zeros((1, 2)), *(_AROUND * reach for reach in _SLIT_PX)])
+        pixels = around + np.array([at.x(), at.y()])
+        flat = (2 * pixels / [self.width(), self.height()] - 1) * [half * aspect, -half]
         turn = view[:3, :3]
-        eye = -turn.T @ view[:3, 3]
-        return self._still.clickable.hit(eye, turn.T @ np.array([x * half * aspect, y * half, -1.0]))
+        rays = np.column_stack([flat, np.full(len(flat), -1.0)]) @ turn
+        rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+        slit_mm = _SLIT * float(np.ptp(self._still.face.positions, axis=0).max())
+        return self._still.clickable.hit(-turn.T @ view[:3, 3], rays, slit_mm)
 
     def _dots(self) -> list[Dot]:
         if not self._places or self._still is None:
