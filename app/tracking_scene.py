@@ -66,9 +66,10 @@ class Scene:
     def pixels(self, points: np.ndarray) -> np.ndarray:
         """Project ``points``, shape (..., 3), mm, into the picture: x right, y down, the first pixel's middle at 0."""
         aspect = self.width / self.height
-        clip = np.concatenate([points, np.ones((*points.shape[:-1], 1))], -1) @ (
-            self.camera.projection(aspect) @ self.camera.view(aspect)
-        ).T
+        clip = (
+            np.concatenate([points, np.ones((*points.shape[:-1], 1))], -1)
+            @ (self.camera.projection(aspect) @ self.camera.view(aspect)).T
+        )
         at = clip[..., :2] / clip[..., 3:]
         return np.stack([(at[..., 0] + 1) * self.width / 2, (1 - at[..., 1]) * self.height / 2], -1) - 0.5
 

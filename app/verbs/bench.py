@@ -185,6 +185,24 @@ def bench_offsets(
     _tell(answer, offset_bench.as_table, json)
 
 
+@bench.command("track")
+def bench_track(
+    db: Database = None,
+    part: Annotated[str, typer.Option(help="test or tune.")] = "test",
+    per_emotion: Annotated[int, typer.Option(min=1, help="Sentences of each emotion.")] = 3,
+    condition: Annotated[list[str] | None, typer.Option(help="Which to measure; all when absent.")] = None,
+    json: Json = False,
+) -> None:
+    """Measure the tracker on rendered videos of known motion, beside points that are followed alone."""
+    from app import tracking_bench
+
+    with progress_bar("bench") as progress:
+        database, stage = _open(db, progress), progress.part(0.1, 1.0)
+        conditions = condition or tuple(tracking_bench.CONDITIONS)
+        answer = tracking_bench.bench_tracking(database, part, per_emotion, conditions, stage)
+    _tell(answer, tracking_bench.as_table, json)
+
+
 @bench.command("window")
 def bench_window(
     db: Database = None,

@@ -44,8 +44,10 @@ def track(
         print_json(answer)
         return
     warn(answer["notes"])
-    print(f"{answer['outputs'][0]}: {answer['frames']} frames of {answer['points']} points, {answer['rate_hz']:g} Hz; "
-          f"trust {answer['trust']:.2f}, {answer['lost']} frames lost; {answer['frames_per_s']:.0f} frames a second")  # fmt: skip
+    print(
+        f"{answer['outputs'][0]}: {answer['frames']} frames of {answer['points']} points, {answer['rate_hz']:g} Hz; "
+        f"trust {answer['trust']:.2f}, {answer['lost']} frames lost; {answer['frames_per_s']:.0f} frames a second"
+    )
 
 
 def _pairs(text: str) -> list[tuple[float, float]]:

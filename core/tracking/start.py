@@ -41,8 +41,10 @@ def named_clicks(points: Sequence[tuple[float, float]]) -> dict[str, tuple[float
     Raises `UserFacingError` unless there are two points or four.
     """
     if len(points) not in (2, 4):
-        raise UserFacingError(f"Tracking begins with 2 or 4 points, and {len(points)} were given.",
-                              "Give both mouth corners, and if you can both outer eye corners: x,y;x,y;x,y;x,y.")  # fmt: skip
+        raise UserFacingError(
+            f"Tracking begins with 2 or 4 points, and {len(points)} were given.",
+            "Give both mouth corners, and if you can both outer eye corners: x,y;x,y;x,y;x,y.",
+        )
     pairs = [np.array(points[i : i + 2], float) for i in range(0, len(points), 2)]
     up = pairs[1].mean(axis=0) - pairs[0].mean(axis=0) if len(pairs) == 2 else np.array([0.0, -1.0])
     right = np.array([-up[1], up[0]])
@@ -59,7 +61,7 @@ def placed(model: FaceModel, clicks: Mapping[str, tuple[float, float]], size_px:
     """
     used = {name: at for name, at in clicks.items() if name in model.landmarks}
     width, height = size_px
-    for name, (x, y) in used.items():
+    for x, y in used.values():
         if not (0 <= x < width and 0 <= y < height):
             raise UserFacingError(f"The point {x:g},{y:g} lies outside of the picture of {width} by {height} pixels.")
     if len(used) < 2:

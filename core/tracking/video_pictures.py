@@ -85,11 +85,10 @@ def pictures(path: str | Path, shrink: float = 1.0, from_s: float | None = None)
             # AVI files are sought to the nearest picture, which may be the one after
             early_s = max(0.0, from_s - 2.0) + start_s
             container.seek(round(early_s * _MICROSECONDS), backward=True)
-        n, rate = 0, float(stream.average_rate or stream.guessed_rate or 25)
-        for frame in _decoded(container, stream, path):
+        rate = float(stream.average_rate or stream.guessed_rate or 25)
+        for n, frame in enumerate(_decoded(container, stream, path)):
             timed = frame.pts is not None
             time_s = float(frame.pts * frame.time_base) - start_s if timed else n / rate
-            n += 1
             if from_s is None or time_s > from_s - 1e-6:
                 yield Picture(_grey(frame, shrink), time_s)
 
