@@ -9,7 +9,7 @@ import typer
 from typer.core import TyperGroup
 
 from app.terminal import clear_failures, end_on_signals, show_log
-from app.verbs import databases, importing, live, measuring, motion, pipeline, speech, units
+from app.verbs import comparing, databases, importing, live, measuring, motion, pipeline, speech, units
 from app.verbs.animeme import train
 from app.verbs.bench import bench
 from app.verbs.growth import db
@@ -49,6 +49,7 @@ for verb in (motion.demo, databases.build, databases.info, databases.tune, speec
     app.command()(verb)
 app.command("export")(motion.export_project)
 app.command("import")(importing.import_captures)
+app.command()(comparing.compare)
 app.command()(pipeline.lipsync)
 app.command()(pipeline.curves)
 app.command()(pipeline.poses)

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, Qt
 from PySide6.QtWidgets import QHeaderView, QTableView
 
+from app.comparison_words import in_figures
 from app.panels.importing.sentence_table import dress
 from app.texts import compare as texts
 from core.evaluation.side_by_side import CAPTURED, Agreement
 
-_DIGITS, _ROW_PX = 2, 24
+_ROW_PX = 24
 
 
 class _Model(QAbstractTableModel):
@@ -85,13 +86,6 @@ class FiguresTable(QTableView):
     def columns(self) -> tuple[str, ...]:
         """Who is held against whom."""
         return self._model.columns
-
-
-def in_figures(value: float | None, unit: str) -> str:
-    """Write a figure with its unit; one that is not known is a dash."""
-    if value is None:
-        return texts.UNKNOWN
-    return f"{unit}{value:.{_DIGITS}f}" if unit == "×" else f"{value:.{_DIGITS}f} {unit}".strip()
 
 
 def _short(name: str, names: tuple[str, str]) -> str:

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QComboBox, QFileDialog, QHBoxLayout, QSplitter, QT
 from app import texts as common_texts
 from app.authoring import Authoring
 from app.comparison_film import FilmRequest, compose_apart
+from app.comparison_words import how_fair, title_of
 from app.emotion_colours import emotion_colours
 from app.export import VideoSettings
 from app.icons import icon
@@ -42,7 +43,7 @@ from core.evaluation.known_capture import KnownCapture
 from core.evaluation.side_by_side import CAPTURED, SideBySide
 from core.media.video import FRAME_RATES
 from core.rig.control_layer import LIP_CONTROLS
-from core.synthesis.registry import DEFAULT_ENGINE, ENGINES, weights_of
+from core.synthesis.registry import DEFAULT_ENGINE, weights_of
 from gpu.gl.face import Style
 
 _SIZE = (1480, 960)
@@ -182,6 +183,7 @@ class CompareWindow(QWidget):
         authoring, view = self.authoring, self.authoring.view
         self._soon.timeout.connect(self._renew)
         self.jobs.failed.connect(self._on_failed)
+        self.jobs.ended.connect(self._on_ended)
         self.choices.changed.connect(self.ask_soon)
         self.again_button.clicked.connect(self.compare_again)
         self.layout_choice.group.idClicked.connect(lambda _: self._on_layout())
@@ -291,6 +293,11 @@ class CompareWindow(QWidget):
         if self.compared is None:
             self.faces.show_empty(sentence)
 
+    def _on_ended(self, kind: str) -> None:
+        """What was cancelled comes no more."""
+        if kind in ("capture", "compare") and self.compared is None:
+            self.faces.show_empty(texts.STOPPED)
+
     def _on_second(self) -> None:
         self._show_lanes()
         self._find_controls()
@@ -337,9 +344,7 @@ class CompareWindow(QWidget):
         beside = compared.beside
         self.faces.say(*(title_of(name) for name in beside.names))
         self.figures.show_agreements(beside.agreements, beside.names)
-        capture = self.capture
-        fair = texts.NOT_CAPTURED if capture is None else texts.HELD_OUT if capture.is_held_out else texts.LEARNT
-        self.fairness.setText(fair)
+        self.fairness.setText(how_fair(self.capture))
         self.transport.set_duration(beside.transcript.duration_s)
         self.on_playhead_moved(self.authoring.view.playhead_s)
 
@@ -446,11 +451,6 @@ class CompareWindow(QWidget):
         """Leave nothing running."""
         self._stop()
         super().closeEvent(event)
-
-
-def title_of(name: str) -> str:
-    """Return what the window calls an engine, or the capture."""
-    return texts.CAPTURED if name == CAPTURED else ENGINES[name].title
 
 
 def _column(widget: QWidget) -> QVBoxLayout:

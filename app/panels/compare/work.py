@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from app.comparison_words import title_of
 from app.texts import compare as texts
 from core.animeme.controls import ControlTrack
 from core.document.live_engine import LiveEngine
@@ -20,7 +21,6 @@ from core.search.weights import SearchWeights
 from core.synthesis.engine import SpeechInput
 from core.synthesis.marker_motion import MarkerMotion
 from core.synthesis.pose_tracks import PoseTracks
-from core.synthesis.registry import engine_kind
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def _motion(request: CompareRequest, name: str, progress: Progress, warnings: li
     try:
         answer = request.engines[name].answer(request.speech, request.weights[name], progress)
     except UserFacingError as error:
-        why = texts.FAILED.format(engine=engine_kind(name).title, why=error.message)
+        why = texts.FAILED.format(engine=title_of(name), why=error.message)
         raise UserFacingError(why, error.remedy) from error
     warnings += answer.warnings
     return answer.motion
