@@ -3,26 +3,50 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from core.animeme.artist_curves import CurveReading
+from core.errors import UserFacingError
 from core.iface.ceiling import reached, said_again
-from core.iface.comparison import Compared, Part, Trainer, compare, estimates, mouth_rows, split_by_frame, split_by_time
+from core.iface.comparison import Part, Trainer, Yardstick, compare, estimates, split_by_frame, split_by_time
 from core.iface.heard_takes import HeardTake, database_takes, recorded_takes
 from core.iface.lip_scores import captured_scores
-from core.iface.measures import largest_displacements
 from core.iface.speaking import SpeakingFace
 from core.iface.speech_features import RATE_HZ
+from core.iface.told import told_estimates
 from core.motion.database import MotionDatabase
 from core.motion.marker_set import MarkerSet
 from core.progress import SILENT, Progress
 
+FACES = ("paper", "modern")
 _AGAIN = ("again", "once more")  # seeds of the takes that the ceiling is measured on
-_More = Callable[[SpeakingFace], dict[str, object]]
+_N_NOISES = 2  # in which each training sentence is heard besides, as when the default face is trained
+
+
+def trainers(names: Sequence[str] = FACES) -> dict[str, Trainer]:
+    """Return what trains the faces ``names``; raises `UserFacingError` for one that there is not."""
+    known = {"paper": _train_paper, "modern": _train_modern}
+    for name in names:
+        if name not in known:
+            raise UserFacingError(f"There is no face '{name}' to train.", f"Choose among {', '.join(FACES)}.")
+    return {name: known[name] for name in names}
+
+
+def _train_paper(takes: Sequence[HeardTake], markers: MarkerSet, progress: Progress) -> SpeakingFace:
+    from core.iface.paper_training import train_paper_face
+
+    return train_paper_face(takes, markers.rest, progress=progress)
+
+
+def _train_modern(takes: Sequence[HeardTake], markers: MarkerSet, progress: Progress) -> SpeakingFace:
+    from core.iface.modern_training import train_modern_face
+
+    return train_modern_face(takes, markers, progress=progress)
 
 
 def bench_database(
@@ -30,26 +54,33 @@ def bench_database(
 ) -> dict[str, object]:
     """Measure by sentence, on what ``database`` holds out to test, and by frame as the paper did.
 
-    On sentences of the bundled actress the ceiling is measured too: each is said twice again, with other seeds. Returns
-    the object of ``--json``. Raises `UserFacingError` for a database that holds nothing out, or is without sound.
+    By sentence the animemes stand beside, which are told the phones and their times: how far a face would come that
+    hears every sound right. On sentences of the bundled actress the ceiling is measured too, by saying each twice again
+    with other seeds. Returns the object of ``--json``. Raises `UserFacingError` for a database that holds nothing out,
+    or is without sound.
     """
     recordings = database.held_out_recordings("test")
-    takes = database_takes(database, progress.part(0.0, 0.1))
+    takes = database_takes(database, progress.part(0.0, 0.1), _N_NOISES)
     tune, test = (
-        recorded_takes(database, said, progress.part(0.1, 0.15))
-        for said in (database.held_out_recordings("tune"), recordings)
+        recorded_takes(database, database.held_out_recordings(split), progress.part(0.1, 0.15), _N_NOISES)
+        for split in ("tune", "test")
     )
+    split = Part(takes, test)
+    yardstick = Yardstick.of(takes, database.markers)
     twice = _said_twice(database, [recording.sentence for recording in recordings])
-
-    def more(face: SpeakingFace) -> dict[str, object]:
-        lips = asdict(captured_scores(face, database, recordings))
-        return {"lips": lips, **({"ceiling": _share(face, takes, twice, database.markers)} if twice else {})}
-
-    by_sentence = _split(Part(takes, test), trainers, database.markers, more, progress.part(0.15, 0.6))
-    by_frame = _split(split_by_frame([*takes, *tune, *test]), trainers, database.markers, None, progress.part(0.6, 1.0))
+    faces, measured = _split(split, trainers, database.markers, progress.part(0.15, 0.6))
+    for name, face in faces.items():
+        measured["faces"][name]["lips"] = asdict(captured_scores(face, database, recordings))
+        if twice:
+            measured["faces"][name]["ceiling"] = _share(estimates(face, test), twice, yardstick)
+    spoken = told_estimates(database, test, progress.part(0.6, 0.65))
+    measured["told"] = {"test": _as_dict(yardstick.measure(test, spoken))}
+    if twice:
+        measured["told"]["ceiling"] = _share(spoken, twice, yardstick)
+    _, by_frame = _split(split_by_frame([*takes, *tune, *test]), trainers, database.markers, progress.part(0.65, 1.0))
     return {
         "corpus": database.name, "synthetic": database.synthetic, "content_hash": database.content_hash,
-        "splits": {"by sentence": by_sentence, "by frame": by_frame},
+        "splits": {"by sentence": measured, "by frame": by_frame},
     }  # fmt: skip
 
 
@@ -64,40 +95,33 @@ def bench_curves(
     from core.iface.curve_takes import curve_takes
 
     units = load_marker_units()
-    takes = curve_takes(files, reading, units, progress.part(0.0, 0.5))
+    takes = curve_takes(files, reading, units, progress.part(0.0, 0.5), _N_NOISES)
     kept = tuple(name for name, keep in zip(units.markers.names, units.kept) if keep)
     groups = {group: tuple(n for n in names if n in kept) for group, names in units.markers.groups.items()}
     markers = MarkerSet(kept, units.markers.rest[units.kept], groups)
-    part = split_by_time(takes)
+    _, by_time = _split(split_by_time(takes), trainers, markers, progress.part(0.5, 1.0))
     names = ", ".join(take.name for take in takes)
-    return {
-        "corpus": f"curves of {names}", "synthetic": False,
-        "splits": {"by time": _split(part, trainers, markers, None, progress.part(0.5, 1.0))},
-    }  # fmt: skip
+    return {"corpus": f"curves of {names}", "synthetic": False, "splits": {"by time": by_time}}
 
 
 def _split(
-    part: Part, trainers: Mapping[str, Trainer], markers: MarkerSet, more: _More | None, progress: Progress
-) -> dict[str, object]:
-    faces = {}
+    part: Part, trainers: Mapping[str, Trainer], markers: MarkerSet, progress: Progress
+) -> tuple[dict[str, SpeakingFace], dict[str, dict]]:
+    faces, figures = {}, {}
     for i, (name, trainer) in enumerate(trainers.items()):
         began = time.perf_counter()
         found = compare(trainer, part, markers, progress.part(i / len(trainers), (i + 1) / len(trainers)))
-        faces[name] = {"seconds_to_train_and_measure": round(time.perf_counter() - began, 1), **_as_dict(found)}
-        if more is not None:
-            faces[name] |= more(found.face)
+        faces[name] = found.face
+        figures[name] = {
+            "seconds_to_train_and_measure": round(time.perf_counter() - began, 1),
+            "train": _as_dict(found.train), "test": _as_dict(found.test),
+        }  # fmt: skip
     speech_s = {half: _seconds(getattr(part, half)) for half in ("train", "test")}
-    return {"speech_s": speech_s, "faces": faces}
+    return faces, {"speech_s": speech_s, "faces": figures}
 
 
-def _as_dict(found: Compared) -> dict[str, object]:
-    return {
-        half: {
-            scope: {emotion: measured._asdict() for emotion, measured in by.items()}
-            for scope, by in getattr(found, half).items()
-        }
-        for half in ("train", "test")
-    }
+def _as_dict(found: Mapping[str, Mapping[str, NamedTuple]]) -> dict[str, dict[str, dict[str, float]]]:
+    return {scope: {emotion: row._asdict() for emotion, row in by.items()} for scope, by in found.items()}
 
 
 def _seconds(takes: Sequence[HeardTake]) -> dict[str, float]:
@@ -120,13 +144,8 @@ def _said_twice(database: MotionDatabase, sentences: Sequence[str]) -> list[list
 
 
 def _share(
-    face: SpeakingFace, train: Sequence[HeardTake], twice: Sequence[Sequence[HeardTake]], markers: MarkerSet
+    spoken: Sequence[np.ndarray], twice: Sequence[Sequence[HeardTake]], yardstick: Yardstick
 ) -> dict[str, dict[str, dict[str, float]]]:
-    largest_mm = largest_displacements(np.concatenate([take.displacements[take.used] for take in train]))
-    spoken = estimates(face, twice[0])
-
-    def of(points: np.ndarray | None) -> dict[str, dict[str, float]]:
-        return {emotion: row._asdict() for emotion, row in reached(spoken, twice, largest_mm, points).items()}
-
-    mouth = mouth_rows(markers)
-    return {"all markers": of(None), **({"lips and jaw": of(mouth)} if len(mouth) else {})}
+    return _as_dict({
+        name: reached(spoken, twice, yardstick.largest_mm, points) for name, points in yardstick.scopes.items()
+    })  # fmt: skip

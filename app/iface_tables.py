@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 _ROWS = {"r": ("R", 3), "spread": ("ν captured", 3), "spread_estimated": ("ν estimated", 3), "mse": ("MSE", 4)}
 _HALVES = ("train", "test")
+TOLD = "told the phones"
 
 
 def as_table(answer: dict) -> str:
@@ -15,8 +16,9 @@ def as_table(answer: dict) -> str:
         lines += ["", f"{split}; {'; '.join(_amount(half, measured['speech_s'][half]) for half in _HALVES)}"]
         faces = measured["faces"]
         for scope in next(iter(faces.values()))["test"]:
-            lines += ["", *_nearness(scope, faces, measured["speech_s"])]
-        ceilings = {name: face["ceiling"] for name, face in faces.items() if "ceiling" in face}
+            lines += ["", *_nearness(scope, faces, measured.get("told"), measured["speech_s"])]
+        ceilings = {name: face["ceiling"] for name, face in {**faces, TOLD: measured.get("told", {})}.items()
+                    if "ceiling" in face}  # fmt: skip
         if ceilings:
             lines += ["", *_ceiling(ceilings)]
         lines.append("")
@@ -29,13 +31,15 @@ def _amount(half: str, seconds: Mapping[str, float]) -> str:
     return f"{half} {', '.join(f'{emotion} {said_s:.0f} s' for emotion, said_s in seconds.items())}"
 
 
-def _nearness(scope: str, faces: Mapping[str, dict], speech_s: Mapping[str, Mapping[str, float]]) -> list[str]:
+def _nearness(
+    scope: str, faces: Mapping[str, dict], told: dict | None, speech_s: Mapping[str, Mapping[str, float]]
+) -> list[str]:
     columns = [(half, emotion) for half in _HALVES for emotion in speech_s[half]]
-    rows = [
-        (name, title, *(f"{face[half][scope][emotion][key]:.{digits}f}" for half, emotion in columns))
-        for name, face in faces.items()
-        for key, (title, digits) in _ROWS.items()
-    ]
+    rows = []
+    for name, face in (*faces.items(), *([] if told is None else [(TOLD, told)])):
+        for key, (title, digits) in _ROWS.items():
+            found = (face.get(half, {}).get(scope, {}).get(emotion) for half, emotion in columns)
+            rows.append((name, title, *("–" if row is None else f"{row[key]:.{digits}f}" for row in found)))
     return _table((scope, "", *(f"{half}, {emotion}" for half, emotion in columns)), rows)
 
 

@@ -103,14 +103,42 @@ def through_units(takes: Sequence[HeardTake], units: MotionUnits) -> list[HeardT
 
 
 @dataclass(frozen=True)
-class Compared:
-    """One trained face on one split; each measure by scope, then by emotion.
+class Yardstick:
+    """What estimates are measured with; learned from the part that is trained on, so that a test part sets no scale.
 
-    Scopes are ``all markers``, ``lips and jaw`` where the marker set tells which those are, and ``tracked``: all
-    markers, of captures that were brought `through_units` as the paper's were.
-
-    train, test : see `by_emotion`
+    largest_mm : see `core.iface.measures.largest_displacements`
+    mouth : rows of the markers of lips and jaw; none when the marker set does not tell them
+    units : motion units, as many as the paper's
     """
+
+    largest_mm: np.ndarray
+    mouth: np.ndarray
+    units: MotionUnits
+
+    @classmethod
+    def of(cls, takes: Sequence[HeardTake], markers: MarkerSet) -> Yardstick:
+        """Make it of the used frames of ``takes``."""
+        largest_mm = largest_displacements(np.concatenate([take.displacements[take.used] for take in takes]))
+        mouth = np.union1d(markers.group("lips"), markers.group("jaw")).astype(int)
+        return cls(largest_mm, mouth, units_of(takes, PAPER_UTTERANCE, PAPER_EXPRESSION_UNITS))
+
+    @property
+    def scopes(self) -> dict[str, np.ndarray | None]:
+        """Which markers are measured, by name; None for all."""
+        return {"all markers": None, **({"lips and jaw": self.mouth} if len(self.mouth) else {})}
+
+    def measure(self, takes: Sequence[HeardTake], spoken: Sequence[np.ndarray]) -> dict[str, dict[str, Nearness]]:
+        """Measure displacements ``spoken`` for ``takes``, by scope, then by emotion.
+
+        Besides `scopes` there is ``tracked``: all markers, of captures brought `through_units` as the paper's were.
+        """
+        found = {name: by_emotion(takes, spoken, self.largest_mm, points) for name, points in self.scopes.items()}
+        return found | {"tracked": by_emotion(through_units(takes, self.units), spoken, self.largest_mm)}
+
+
+@dataclass(frozen=True)
+class Compared:
+    """One trained face on one split; ``train`` and ``test`` as `Yardstick.measure` gives them."""
 
     face: SpeakingFace
     train: Mapping[str, Mapping[str, Nearness]]
@@ -118,24 +146,10 @@ class Compared:
 
 
 def compare(trainer: Trainer, part: Part, markers: MarkerSet, progress: Progress = SILENT) -> Compared:
-    """Train on one half of ``part`` and measure on both; lengths that displacements are divided by are of the first."""
+    """Train on one half of ``part`` and measure on both."""
     face = trainer(part.train, markers, progress.part(0.0, 0.9))
-    largest_mm = largest_displacements(np.concatenate([take.displacements[take.used] for take in part.train]))
-    units = units_of(part.train, PAPER_UTTERANCE, PAPER_EXPRESSION_UNITS)
-    mouth = mouth_rows(markers)
-    measured = []
-    for i, takes in enumerate((part.train, part.test)):
-        progress.step(0.9 + 0.05 * i, "measuring")
-        spoken = estimates(face, takes)
-        scopes = {"all markers": by_emotion(takes, spoken, largest_mm)}
-        if len(mouth):
-            scopes["lips and jaw"] = by_emotion(takes, spoken, largest_mm, mouth)
-        scopes["tracked"] = by_emotion(through_units(takes, units), spoken, largest_mm)
-        measured.append(scopes)
+    progress.step(0.9, "measuring")
+    yardstick = Yardstick.of(part.train, markers)
+    train, test = (yardstick.measure(takes, estimates(face, takes)) for takes in (part.train, part.test))
     progress.step(1.0, "measured")
-    return Compared(face, *measured)
-
-
-def mouth_rows(markers: MarkerSet) -> np.ndarray:
-    """Return the markers of lips and jaw, int, sorted; none when the set does not tell them."""
-    return np.union1d(markers.group("lips"), markers.group("jaw")).astype(int)
+    return Compared(face, train, test)

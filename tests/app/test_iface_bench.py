@@ -51,6 +51,8 @@ def test_the_table_has_a_column_for_each_half_and_emotion(answer):
     row = lines[lines.index(heads[0]) + 2]
     assert row.startswith("| ridge | R |") and row.endswith(f"| {r:.3f} |")
     assert any("; lip gap r 0." in line for line in lines)
+    told = answer["splits"]["by sentence"]["told"]["test"]["all markers"]["neutral"]["r"]
+    assert any(line.startswith("| told the phones | R | – | – |") and f"{told:.3f}" in line for line in lines)
 
 
 def test_sentences_of_the_actress_are_said_twice_for_the_ceiling(loud_database, monkeypatch):

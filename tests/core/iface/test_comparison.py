@@ -10,10 +10,10 @@ import pytest
 from core.errors import UserFacingError
 from core.iface.comparison import (
     Part,
+    Yardstick,
     by_emotion,
     compare,
     estimates,
-    mouth_rows,
     split_by_frame,
     split_by_time,
     through_units,
@@ -121,7 +121,7 @@ def test_what_motion_units_span_passes_through_them(takes):
 
 def test_a_face_that_hears_is_nearer_than_one_that_guesses(part, loud_database):
     found = compare(train, part, loud_database.markers)
-    np.testing.assert_array_equal(mouth_rows(loud_database.markers), [3, 4, 5])
+    np.testing.assert_array_equal(Yardstick.of(part.train, loud_database.markers).mouth, [3, 4, 5])
     for measured in (found.train, found.test):
         assert list(measured) == ["all markers", "lips and jaw", "tracked"]
         assert all(list(by) == ["neutral", "anger"] for by in measured.values())
