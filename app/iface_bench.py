@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.animeme.artist_curves import CurveReading
+from core.animeme.artist_curves import CurveReading, curve_files
 from core.errors import UserFacingError
 from core.iface.ceiling import reached, said_again
 from core.iface.comparison import Part, Trainer, Yardstick, compare, estimates, split_by_frame, split_by_time
@@ -85,9 +85,11 @@ def bench_database(
 
 
 def bench_curves(
-    files: Sequence[Path], reading: CurveReading, trainers: Mapping[str, Trainer], progress: Progress = SILENT
+    paths: Sequence[Path], reading: CurveReading, trainers: Mapping[str, Trainer], progress: Progress = SILENT
 ) -> dict[str, object]:
     """Measure on takes of a studio's curves, moving the markers of the default face; the end of each take is the test.
+
+    paths : files of curves, or folders of them; see `core.animeme.artist_curves.curve_files`
 
     Raises `UserFacingError` for curves that cannot be read; see `core.iface.curve_takes`.
     """
@@ -95,7 +97,7 @@ def bench_curves(
     from core.iface.curve_takes import curve_takes
 
     units = load_marker_units()
-    takes = curve_takes(files, reading, units, progress.part(0.0, 0.5), _N_NOISES)
+    takes = curve_takes(curve_files(paths, reading), reading, units, progress.part(0.0, 0.5), _N_NOISES)
     kept = tuple(name for name, keep in zip(units.markers.names, units.kept) if keep)
     groups = {group: tuple(n for n in names if n in kept) for group, names in units.markers.groups.items()}
     markers = MarkerSet(kept, units.markers.rest[units.kept], groups)

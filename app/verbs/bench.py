@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.terminal import print_json, progress_bar
+from app.verbs.options import AudioDir, Lexicon, Rate, ShapeNames, ShapeSheet
 from core.progress import Progress
 
 if TYPE_CHECKING:
@@ -143,6 +144,36 @@ def bench_animeme(
         database = _open(db, progress)
         answer = animeme_bench.bench_animemes(database, pictures, progress=progress.part(0.1, 1.0))
     _tell(answer, animeme_bench.as_table, json)
+
+
+@bench.command("iface")
+def bench_iface(
+    db: Database = None,
+    curves: Annotated[
+        list[Path] | None,
+        typer.Option("--controls", help="Measure on a studio's curves instead; a file, or a folder of .csv or .npy."),
+    ] = None,
+    shape_names: ShapeNames = None,
+    shape_sheet: ShapeSheet = None,
+    rate: Rate = None,
+    audio_dir: AudioDir = None,
+    lexicon: Lexicon = None,
+    faces: Annotated[list[str] | None, typer.Option("--face", help="paper or modern; both when absent.")] = None,
+    json: Json = False,
+) -> None:
+    """Measure faces that hear, trained anew: tables like the paper's, by sentence and by frame; curves by time."""
+    from app import iface_bench
+    from app.iface_tables import as_table
+    from core.animeme.artist_curves import CurveReading
+
+    trainers = iface_bench.trainers(faces or iface_bench.FACES)
+    with progress_bar("bench") as progress:
+        if curves:
+            reading = CurveReading(shape_names, shape_sheet, rate, audio_dir, lexicon)
+            answer = iface_bench.bench_curves(curves, reading, trainers, progress)
+        else:
+            answer = iface_bench.bench_database(_open(db, progress), trainers, progress.part(0.1, 1.0))
+    _tell(answer, as_table, json)
 
 
 @bench.command("suspicion")

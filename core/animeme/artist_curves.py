@@ -56,9 +56,7 @@ def read_artist_examples(
     Raises `UserFacingError` that names the file that is missing, damaged, or has other controls than the first.
     """
     reading = reading or CurveReading()
-    if reading.speech_folder is not None and not reading.speech_folder.is_dir():
-        raise UserFacingError(f"There is no folder of sounds at '{reading.speech_folder}'.")
-    files = _files(paths, reading)
+    files = curve_files(paths, reading)
     examples: list[Example] = []
     notes: list[str] = []
     for n, file in enumerate(files):
@@ -75,7 +73,13 @@ def read_artist_examples(
     return examples, notes
 
 
-def _files(paths: Sequence[Path], reading: CurveReading) -> list[Path]:
+def curve_files(paths: Sequence[Path], reading: CurveReading) -> list[Path]:
+    """Return the files of curves that ``paths`` name, and all that lie in those that are folders.
+
+    Raises `UserFacingError` when there is none, or the folder of sounds is missing.
+    """
+    if reading.speech_folder is not None and not reading.speech_folder.is_dir():
+        raise UserFacingError(f"There is no folder of sounds at '{reading.speech_folder}'.")
     listed = {path.resolve() for path in (reading.shape_names, reading.shape_sheet) if path is not None}
     files: list[Path] = []
     for path in paths:

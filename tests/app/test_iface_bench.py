@@ -10,11 +10,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import soundfile
+from typer.testing import CliRunner
 
+from app.cli import app
 from app.iface_bench import bench_curves, bench_database
 from app.iface_tables import as_table
 from core.actress.corpus import CORPUS_NAME
 from core.animeme.artist_curves import CurveReading
+from core.errors import UserFacingError
 from core.iface.heard_takes import database_takes
 from core.iface.speech_features import SAMPLE_RATE_HZ
 from core.speech.transcript import Transcript
@@ -100,9 +103,20 @@ def test_curves_are_measured_by_what_they_move(tmp_path, monkeypatch):
         return Transcript.covering([], [], duration_s, []), "", "recognised"
 
     monkeypatch.setattr(curve_takes, "placed_speech", recognised)
-    answer = bench_curves(sorted(tmp_path.glob("*.npz")), CurveReading(), {"ridge": train})
+    answer = bench_curves([tmp_path], CurveReading(), {"ridge": train})
     split = answer["splits"]["by time"]
     assert split["speech_s"]["test"]["neutral"] == pytest.approx(2 * 2.0, abs=0.1)
     assert split["speech_s"]["train"]["neutral"] == pytest.approx(2 * 6.0, abs=0.1)
     assert split["faces"]["ridge"]["test"]["lips and jaw"]["neutral"]["r"] > 0.5
     assert "| lips and jaw |  | train, neutral | test, neutral |" in as_table(answer)
+
+
+def test_the_verb_tells_what_it_cannot_measure(tmp_path):
+    runner = CliRunner()
+    for words, said in (
+        (["--face", "old"], "no face 'old'"),
+        (["--controls", str(tmp_path)], "no curves in"),
+        (["--controls", str(tmp_path), "--audio-dir", str(tmp_path / "gone")], "no folder of sounds"),
+    ):
+        answer = runner.invoke(app, ["bench", "iface", *words])
+        assert isinstance(answer.exception, UserFacingError) and said in str(answer.exception)
