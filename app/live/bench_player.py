@@ -20,6 +20,7 @@ def play(path: Path) -> dict[str, object]:
     """Play to the end; returns what is printed."""
     import sounddevice
 
+    from app.live.priority import be_served_first
     from core.media.audio import load_audio
 
     audio = load_audio(path)
@@ -37,6 +38,7 @@ def play(path: Path) -> dict[str, object]:
         if len(part) < n_frames:
             done.set()
 
+    be_served_first()  # a player that is late would be counted as ours
     with sounddevice.OutputStream(
         samplerate=audio.rate_hz, channels=1, dtype="float32", blocksize=round(_BLOCK_S * audio.rate_hz), latency="low",
         callback=fill,

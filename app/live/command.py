@@ -54,23 +54,30 @@ class Ready:
     outgoing: Outgoing | None
 
 
-def made_ready(job: LiveJob, progress: Progress = SILENT) -> Ready:
-    """Open what ``job`` needs; raises `UserFacingError` before anything listens."""
+def checked(job: LiveJob) -> tuple[str, InputDevice | None]:
+    """Return the emotion and the device that ``job`` names; raises `UserFacingError` for what cannot be."""
     if job.file is not None and job.device is not None:
         raise UserFacingError("A file and a device were named; one of them is listened to.")
     if job.project is not None:
         if job.project.suffix.lower() != SUFFIX:
             raise UserFacingError(f"'{job.project}' is no name of a project.", f"Let it end in {SUFFIX}.")
         check_target(job.project)
-    emotion = emotion_named(job.emotion)
-    address = None if job.stream is None else StreamAddress.parsed(job.stream)
-    source = FileSource(job.file) if job.file is not None else Microphone(named_device(job.device))
+    if job.stream is not None:
+        StreamAddress.parsed(job.stream)
+    return emotion_named(job.emotion), named_device(job.device)
+
+
+def made_ready(job: LiveJob, progress: Progress = SILENT) -> Ready:
+    """Open what ``job`` needs; raises `UserFacingError` before anything listens."""
+    emotion, device = checked(job)
+    source = FileSource(job.file) if job.file is not None else Microphone(device)
     database, face = open_speaking_face(job.database, progress)
     if emotion != NEUTRAL and emotion not in face.expressions:
         raise UserFacingError(
             f"'{database.name}' taught the face no '{emotion}'.", f"It knows {', '.join((NEUTRAL, *face.expressions))}."
         )
-    return Ready(database, face, source, None if address is None else open_outgoing(address, database))
+    outgoing = None if job.stream is None else open_outgoing(StreamAddress.parsed(job.stream), database)
+    return Ready(database, face, source, outgoing)
 
 
 def open_outgoing(address: StreamAddress, database: MotionDatabase) -> Outgoing:

@@ -18,6 +18,8 @@ import sys
 import threading
 import time
 
+from app.live.priority import be_served_first
+
 MESSAGE_HEAD = struct.Struct("<cI")
 BLOCK_HEAD = struct.Struct("<dd?")  # when it came, age of its last sample in seconds, whether sound was lost before
 # Input-only streams at 16 kHz stay silent for seconds on PulseAudio, and every device knows 48 kHz.
@@ -109,6 +111,7 @@ def main(arguments: list[str]) -> None:
             print(json.dumps(devices()))
         else:
             threading.Thread(target=_end_with_parent, daemon=True).start()
+            be_served_first()  # before PortAudio starts threads, which take it over
             listen(*arguments[1:])
     except OSError as error:  # no PortAudio library, or nobody reads any more
         print(error, file=sys.stderr)

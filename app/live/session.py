@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.live.outgoing import Outgoing
+from app.live.priority import be_served_first
 from app.live.source import Block, Source
 from app.live.take import Recorder, Take
 from core.errors import UserFacingError
@@ -152,6 +153,7 @@ class LiveSession:
     # The session's own thread
 
     def _run(self, source: Source, records: bool) -> None:
+        be_served_first()
         failure: UserFacingError | None = None
         live: LiveFace | None = None
         began_s = 0.0  # when the first sample was in the air

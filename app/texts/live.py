@@ -84,6 +84,9 @@ FULL = "An hour was recorded, which is the most; the recording ended."
 FILTER_PROJECT = "Projects (*.efase)"
 FILE_NAME = "live-%Y%m%d-%H%M%S"
 CLOSE_UNSAVED = "What was recorded live is not saved yet."
+CLOSE_LOSES = "The recording is not saved. Save it as a project, or close once more to lose it."
+OPENING = "Opening the motion database…"
+CLOSED_EARLY = "The window was closed before the face had learned to speak."
 
 # Streaming out
 STREAM = "STREAM OUT"

@@ -52,6 +52,11 @@ class DelayTable(QWidget):
         self._parts.append((capture_s, look_ahead_s, compute_s, frame_s))
 
     @property
+    def has_parts(self) -> bool:
+        """Whether a frame was painted."""
+        return bool(self._parts)
+
+    @property
     def median_ms(self) -> float | None:
         """The whole delay, None while nothing was painted."""
         return 1000.0 * float(np.median(np.sum(self._parts, axis=1))) if self._parts else None

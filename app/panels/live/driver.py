@@ -33,6 +33,9 @@ class _Voice(QObject):
 class LiveDriver(QObject):
     """Runs one `LiveSession` for the window.
 
+    source : what it listens to, or None; last_source : what it listened to last
+    take : a recording that waits to be saved; records_at_once : whether sources are recorded from their first sample
+
     devices_found(devices) : the microphones of this machine; learned(face) : a face can speak
     heard(frame) : a `TimedFrame`; changed() : it began or ended to listen, to record or to send, or there is a take
     noted(sentence), failed(sentence, remedy) : what happened; saved(path) : the take is a project now
@@ -51,7 +54,9 @@ class LiveDriver(QObject):
         self.jobs = jobs
         self.session: LiveSession | None = None
         self.source: Source | None = None
+        self.last_source: Source | None = None
         self.take: Take | None = None
+        self.records_at_once = False
         self._database: MotionDatabase | None = None
         self._taken_from: MotionDatabase | None = None
         self._asked = (NEUTRAL, 1.0)
@@ -103,7 +108,8 @@ class LiveDriver(QObject):
     def _begin(self) -> None:
         self.source, self._waiting = self._waiting, None
         if self.source is not None:
-            self.session.start(self.source)
+            self.last_source = self.source
+            self.session.start(self.source, self.records_at_once)
         self.changed.emit()
 
     def _tell_ended(self, failure: UserFacingError | None) -> None:

@@ -68,8 +68,10 @@ class ExpressionChoice(QWidget):
         """Return the button of an emotion."""
         return self._group.button(EMOTIONS.index(emotion))
 
-    def choose(self, emotion: str) -> None:
-        """Ask for an emotion, as a click on its button does."""
+    def choose(self, emotion: str, intensity: float | None = None) -> None:
+        """Ask for an emotion, as a click on its button does, at an intensity of 0..1 or that of the slider."""
+        if intensity is not None:
+            self.slider.setValue(round(_FULL * intensity))
         if self.button(emotion).isEnabled():
             self.button(emotion).setChecked(True)
             self._tell()

@@ -167,6 +167,7 @@ class LiveWindow(QWidget):
         self.listen_button.clicked.connect(self.on_listen)
         self.record_button.clicked.connect(self.on_record)
         self.keep_button.clicked.connect(self.ask_keep)
+        self.open_button.setVisible(self.parent() is not None)
         self.open_button.clicked.connect(lambda: self.project_asked.emit(self._saved))
         self.address.returnPressed.connect(lambda: self.send_button.setChecked(True))
         self.address.textEdited.connect(lambda _: self.send_button.setChecked(False))
@@ -389,8 +390,13 @@ class LiveWindow(QWidget):
     # Qt
 
     def closeEvent(self, event) -> None:
-        """Listen no more; what was recorded waits."""
+        """Listen no more; what was recorded waits, unless the window stands alone: then it is told once."""
         self.driver.stop()
+        alone = self.parent() is None and not self.driver.records_at_once
+        if alone and self.driver.take is not None and self.message.text != texts.CLOSE_LOSES:
+            self.message.say(texts.CLOSE_LOSES)
+            event.ignore()
+            return
         self.send_button.setChecked(False)
         super().closeEvent(event)
 
