@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -193,3 +194,34 @@ def efase(monkeypatch, capsys):
         return stop.value.code or 0, answer.out, answer.err
 
     return run
+
+
+@pytest.fixture(scope="session")
+def mouth_database_path(tmp_path_factory, tiny_corpus):
+    """The tiny corpus with a mouth that can be measured, each sentence its own word; s6 and s7 are held out."""
+    corpus = tiny_corpus({"test": ("s6", "s7")})
+    recordings = []
+    for recording in corpus.recordings:
+        said = recording.transcript
+        words = tuple(replace(word, word=f"word{recording.sentence}") for word in said.words)
+        recordings.append(replace(recording, transcript=replace(said, words=words), text=words[0].word))
+    landmarks = {
+        "upper_lip": "lip_up", "lower_lip": "lip_low", "mouth_corner_left": "ring0", "mouth_corner_right": "ring6",
+    }  # fmt: skip
+    path = tmp_path_factory.mktemp("mouths") / "mouths.h5"
+    build_database(replace(corpus, recordings=recordings, landmarks=landmarks), path, BuildSettings(rate_hz=60.0))
+    return path
+
+
+@pytest.fixture(scope="session")
+def held_out_speech_path(tmp_path_factory, mouth_database_path):
+    """A hum as long as the sentence s7 of `mouth_database_path`, which was held out, with its TextGrid beside it."""
+    from core.motion.database import open_database
+    from core.speech.textgrid import write_textgrid
+
+    said = open_database(mouth_database_path).held_out_recordings("test")[1].transcript
+    folder = tmp_path_factory.mktemp("held-out")
+    times_s = np.arange(round(said.duration_s * 16_000)) / 16_000
+    soundfile.write(folder / "s7.wav", 0.3 * np.sin(2 * np.pi * 140 * times_s), 16_000)
+    write_textgrid(said, folder / "s7.TextGrid")
+    return folder / "s7.wav"
