@@ -26,7 +26,7 @@ from core.progress import SILENT, Progress
 REACH_MM = (70.0, 50.0, 40.0, 32.0, 26.0, 21.0, 17.0, 14.0, 11.0, 9.0, 7.5, 6.0, 5.0, 4.2, 3.6, 3.0)
 FARTHEST_MM = (30.0, 8.0)  # of the nearest place that pulls, in the first and in the last round
 LOOKS_ALIKE = (0.2, 0.6)  # least cosine of both normals
-POINT_AREA_MM2 = 60.0  # a clicked point pulls like so much of the skin
+POINT_AREA_MM2 = (60.0, 30.0)  # a clicked point pulls like so much of the skin: clicks are less sure than surfaces
 PAIR_AREA_MM2 = 400.0
 HOLD = 1e-4
 
@@ -65,8 +65,8 @@ def close(
     contact = csr_matrix((np.ones(len(rows)), (rows, upper)), shape) - csr_matrix(
         (np.ones(len(rows)), (rows, lower)), shape
     )
-    fixed = POINT_AREA_MM2 * anchors.T @ anchors + PAIR_AREA_MM2 * contact.T @ contact + HOLD * diags(areas)
-    pulled = POINT_AREA_MM2 * anchors.T @ (targets - anchors @ warped)
+    fixed = PAIR_AREA_MM2 * contact.T @ contact + HOLD * diags(areas)
+    clicked, pulled = anchors.T @ anchors, anchors.T @ (targets - anchors @ warped)
     moved, weight = np.zeros_like(warped), np.zeros(len(warped))
     may = np.flatnonzero(protected.share > 0)
     for r, reach in enumerate(REACH_MM):
@@ -84,8 +84,9 @@ def close(
         wanted = moved.copy()
         wanted[may] += across[:, None] * near.normal
         pull = areas * weight
-        system = csc_matrix(diags(pull) + reach**4 * bending + fixed)
-        moved = splu(system).solve(pull[:, None] * wanted + pulled)
+        hold = POINT_AREA_MM2[0] * (POINT_AREA_MM2[1] / POINT_AREA_MM2[0]) ** along
+        system = csc_matrix(diags(pull) + reach**4 * bending + fixed + hold * clicked)
+        moved = splu(system).solve(pull[:, None] * wanted + hold * pulled)
     progress.step(1.0)
     return Closed(moved, weight)
 

@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 
 from core.face.face import PARTS, Face
 from core.face.lip_contact import LipContact
+from core.face.own_face_surface import Surface
 
 # Fractions of the outer eye distance: within the first no pull, from the second on the whole.
 LIPS_FADE = (0.012, 0.045)
@@ -17,6 +18,7 @@ RIM_FADE = (0.02, 0.10)
 HAIR_FADE_MM = (-4.0, 6.0)
 HAIR_SHARE = 0.15
 EAR_SHARE = 0.35
+WALL, WALL_FACES = (0.02, 0.04, 0.07), -0.35
 EAR_AT = 0.80
 
 
@@ -63,6 +65,7 @@ class Protected:
                 margin = 0.1 * scale
                 around |= ((rim > ball.min(axis=0) - margin) & (rim < ball.max(axis=0) + margin)).all(axis=1)
         share *= _fade(at, rim[around], LIDS_FADE, scale) * _fade(at, rim[~around], RIM_FADE, scale)
+        share *= ~_enclosed(at, triangles, scale)
         if "hair" in face.masks:
             low, high = HAIR_FADE_MM
             t = np.clip((face.masks["hair"][surface] - low) / (high - low), 0.0, 1.0)
@@ -72,6 +75,20 @@ class Protected:
         ear = (np.abs(away[:, 0]) > EAR_AT * scale) & (np.abs(away[:, 1] + 0.25 * scale) < 0.5 * scale)
         share[ear & (away[:, 2] < -0.5 * scale)] *= EAR_SHARE
         return cls(surface, triangles, share, pairs)
+
+
+def _enclosed(at: np.ndarray, triangles: np.ndarray, scale: float) -> np.ndarray:
+    """Tell which vertices look at a wall close before them, as within nostrils: no scan shows these; bool, (n,)."""
+    surface = Surface(at, triangles, spacing_mm=0.02 * scale)
+    inside = np.zeros(len(at), bool)
+    for away in WALL:
+        near = surface.nearest(at + away * scale * surface.vertex_normals)
+        opposite = np.einsum("ij,ij->i", near.normal, surface.vertex_normals) < WALL_FACES
+        inside |= opposite & (near.distance < 0.9 * away * scale)
+    # a ring more, so that no rim of a nostril is pulled into it
+    edge = inside[triangles].any(axis=1)
+    inside[triangles[edge]] = True
+    return inside
 
 
 def _fade(at: np.ndarray, seam: np.ndarray, reach: tuple[float, float], scale: float) -> np.ndarray:

@@ -135,7 +135,8 @@ class FacePane(Pane):
                 self.shapes.addItems(names)
                 self.shapes.setCurrentText("jawOpen")
             left = fitted.own.closed
-            self.distance.setText(texts.LEFT_OVER.format(median=left.median, p95=left.p95, covered=left.covered))
+            self.distance.setText(texts.LEFT_OVER.format(median=left.median, p95=left.p95))
+            self.distance.setToolTip(texts.LEFT_OVER_TIP.format(covered=left.covered))
             self.strength.setValue(0)
             if self.on_generic:
                 self.shown.choose(_FITTED)
