@@ -9,7 +9,7 @@ import typer
 from typer.core import TyperGroup
 
 from app.terminal import clear_failures, end_on_signals, show_log
-from app.verbs import comparing, databases, importing, live, measuring, motion, pipeline, speech, units
+from app.verbs import comparing, databases, importing, live, measuring, motion, pipeline, speech, stimuli, units
 from app.verbs.animeme import train
 from app.verbs.bench import bench
 from app.verbs.growth import db
@@ -54,6 +54,8 @@ app.command()(pipeline.lipsync)
 app.command()(pipeline.curves)
 app.command()(pipeline.poses)
 app.command()(units.units)
+app.command()(stimuli.stimuli)
+app.command("stimuli-table")(stimuli.stimuli_table)
 app.command()(live.live)
 app.command("fit-face")(fit_face)
 app.command()(track)

@@ -1,0 +1,1 @@
+"""The stimuli of a perception study, from a database to a folder."""
