@@ -91,8 +91,9 @@ class Recorder:
         if self.duration_s < SHORTEST_S or not self._frames:
             raise UserFacingError(texts.NOTHING_RECORDED)
         audio = Audio(np.concatenate(self._pieces), self._rate_hz)
-        asked = [frame.asked for frame in self._frames]
-        asked += asked[-1:] * (round(audio.duration_s * RATE_HZ) - len(asked))
+        n_frames = max(1, round(audio.duration_s * RATE_HZ))
+        asked = [frame.asked for frame in self._frames][:n_frames]
+        asked += asked[-1:] * (n_frames - len(asked))
         return Take(audio, spans_of(asked), np.stack([frame.positions for frame in self._frames]))
 
 
