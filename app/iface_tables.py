@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-_ROWS = {"r": ("R", 3), "spread": ("ν captured", 3), "spread_estimated": ("ν estimated", 3), "mse": ("MSE", 4)}
+_ROWS = {"r": ("R", 3), "spread_estimated": ("ν", 3), "mse": ("MSE", 4)}
 _HALVES = ("train", "test")
 TOLD = "told the phones"
 
@@ -35,7 +35,8 @@ def _nearness(
     scope: str, faces: Mapping[str, dict], told: dict | None, speech_s: Mapping[str, Mapping[str, float]]
 ) -> list[str]:
     columns = [(half, emotion) for half in _HALVES for emotion in speech_s[half]]
-    rows = []
+    first = next(iter(faces.values()))
+    rows = [("captured", "ν", *(f"{first[half][scope][emotion]['spread']:.3f}" for half, emotion in columns))]
     for name, face in (*faces.items(), *([] if told is None else [(TOLD, told)])):
         for key, (title, digits) in _ROWS.items():
             found = (face.get(half, {}).get(scope, {}).get(emotion) for half, emotion in columns)
