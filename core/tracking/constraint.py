@@ -45,10 +45,17 @@ def constrained(
     return Constrained(fit, weights, spread)
 
 
-def fresh_start(face: PosedUnits, points: np.ndarray, trust: np.ndarray) -> AffineFit | None:
-    """Begin without a last frame, by appendix A; None where too few points are seen."""
-    seen = trust > 0
-    return None if too_few_points(face, int(seen.sum())) else linear_start(face, points, trust)
+def fresh_start(face: PosedUnits, points: np.ndarray, trust: np.ndarray, n_units: int) -> AffineFit | None:
+    """Begin without a last frame, by appendix A; None where too few points are seen.
+
+    n_units : how many of the units take part, from the first; those of a turning head are no use, since appendix A
+        cannot tell (z, 0) from (0, z)
+    """
+    bare = PosedUnits(face.base, face.units[:n_units])
+    if too_few_points(bare, int((trust > 0).sum())):
+        return None
+    begun = linear_start(bare, points, trust)
+    return AffineFit(np.append(begun.parameters, np.zeros(len(face.units) - n_units)), begun.affine)
 
 
 def spread_of(away_px: np.ndarray, trust: np.ndarray) -> float:

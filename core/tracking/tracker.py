@@ -76,7 +76,7 @@ class FaceTracker:
     """
 
     def __init__(self, model: FaceModel, placement: Placement, first: np.ndarray, start: np.ndarray) -> None:
-        self._units = model.flat_units
+        self._units, self._n_own = model.flat_units, len(model.units)
         self._prior = _NOISE_PX2 / model.flat_variance
         self._sheet = FaceSheet.of(start, (first.shape[1], first.shape[0]))
         self._mask = self._sheet.hull()
@@ -173,7 +173,7 @@ class FaceTracker:
         fit = self.state.fit
         shifted = _shifted(replace(fit, parameters=np.zeros_like(fit.parameters)), middle - self._middle_of_sheet(fit))
         anchored, trust, _ = self._anchored(look, face, shifted, _FAR_LEVELS)
-        fresh = fresh_start(face, anchored, trust)
+        fresh = fresh_start(face, anchored, trust, self._n_own)
         starts = [shifted] if fresh is None else [shifted, fresh]
         frames = [self._fitted(look, face, None, start, {}, _FAR_LEVELS) for start in starts]
         return max(frames, key=lambda frame: frame.trust.mean())
