@@ -13,6 +13,7 @@ from app.verbs import comparing, databases, importing, live, measuring, motion, 
 from app.verbs.animeme import train
 from app.verbs.bench import bench
 from app.verbs.growth import db
+from app.verbs.iface import train_iface
 from app.verbs.own_face import fit_face
 from app.verbs.tracking import track
 from core.errors import UserFacingError
@@ -42,6 +43,7 @@ app = typer.Typer(
 )  # fmt: skip
 
 app.add_typer(bench, name="bench")
+train.command("iface")(train_iface)
 app.add_typer(train, name="train")
 app.add_typer(db, name="db")
 for verb in (motion.demo, databases.build, databases.info, databases.tune, speech.align, motion.synth,

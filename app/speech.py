@@ -79,6 +79,12 @@ def load_speech(
     return LoadedSpeech(audio, transcript, said, True)
 
 
+def unheeded_speech(sound: Path) -> LoadedSpeech:
+    """Load a sound whose words nobody asks for; its transcript is silent from start to end."""
+    audio = load_audio(sound)
+    return LoadedSpeech(audio, Transcript.covering([], [], audio.duration_s), "", False)
+
+
 def _aligned(
     audio: Audio, text: str, lexicon: Lexicon | None, progress: Progress, words: list[str] | None = None
 ) -> Transcript:

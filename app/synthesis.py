@@ -10,7 +10,7 @@ from pathlib import Path
 from app.control_export import check_rigs
 from app.demo import open_named
 from app.export import VideoSettings, check_outputs, check_outputs_are_not_read, rounded_seconds, write_outputs
-from app.speech import emotion_modifiers, load_speech
+from app.speech import emotion_modifiers, load_speech, unheeded_speech
 from core.document.parts import FaceChoice
 from core.errors import UserFacingError
 from core.motion.database import MotionDatabase
@@ -98,8 +98,11 @@ def run(job: SynthesisJob, progress: Progress = SILENT, ready: Ready | None = No
     database, engine = ready.database, ready.engine
 
     began = time.perf_counter()
-    speech = load_speech(job.audio, job.text, job.phones, job.lexicon, job.strict, progress.part(0.1, 0.25),
-                         job.language, job.phone_table)  # fmt: skip
+    if kind.listens and not _needs_words(job):
+        speech = unheeded_speech(job.audio)
+    else:
+        speech = load_speech(job.audio, job.text, job.phones, job.lexicon, job.strict, progress.part(0.1, 0.25),
+                             job.language, job.phone_table)  # fmt: skip
     modifiers = emotion_modifiers(job.emotion, job.emotions, speech.audio.duration_s)
     aligned_s = time.perf_counter() - began
     asked = time.perf_counter()
@@ -132,6 +135,12 @@ def run(job: SynthesisJob, progress: Progress = SILENT, ready: Ready | None = No
         "warnings": warnings,
         "outputs": [str(path) for path in job.outputs],
     }
+
+
+def _needs_words(job: SynthesisJob) -> bool:
+    """Whether what is said was given, or is to be written; else an engine that listens does without."""
+    given = (job.text, job.phones, job.language, job.phone_table)
+    return any(g is not None for g in given) or any(path.suffix.lower() == ".textgrid" for path in job.outputs)
 
 
 def _check_inputs(job: SynthesisJob) -> None:

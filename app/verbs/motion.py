@@ -25,8 +25,8 @@ from core.errors import UserFacingError
 
 # of core.synthesis.registry, which takes too long to import for a help text; a test compares them
 _ENGINES = (
-    "search, search-single (one path), search-paper (printed) or animeme; to compare with: animeme-printed, mmm, "
-    "cohen-massaro, phone-means, random, static."
+    "search, search-single (one path), search-paper (printed), animeme, iface (by ear) or iface-paper (printed); to "
+    "compare with: animeme-printed, mmm, cohen-massaro, phone-means, random, static."
 )
 
 

@@ -27,7 +27,7 @@ class DescentSettings:
     decay : share of the weights that a step takes away, times its length
     """
 
-    n_passes: int = 40
+    n_passes: int = 80
     step: float = 2e-3
     batch: int = 128
     noise: float = 0.5

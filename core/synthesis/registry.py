@@ -18,6 +18,8 @@ from core.errors import UserFacingError
 from core.evaluation.engines.phone_means import PhoneMeans
 from core.evaluation.engines.random_nodes import RandomNodes
 from core.evaluation.engines.static_face import StaticFace
+from core.iface.engine import IfaceEngine
+from core.iface.model_file import PAPER
 from core.motion.database import MotionDatabase
 from core.search.compute import SearchKernels
 from core.search.engine import SearchEngine
@@ -46,6 +48,7 @@ class EngineKind:
     searches : whether its motion is a path of motion nodes, with costs, prices, pins and weights
     is_offered : whether the window offers it; plain rivals are there to be measured beside
     can_hold : whether it can keep dragged sounds at their middle (`core.synthesis.engine.SpeechInput.holds`)
+    listens : whether it goes by the sound alone, and learns from sentences that are kept with theirs
     """
 
     title: str
@@ -54,6 +57,7 @@ class EngineKind:
     searches: bool = False
     is_offered: bool = True
     can_hold: bool = False
+    listens: bool = False
 
 
 def _search(name: str, title: str, tip: str) -> EngineKind:
@@ -85,6 +89,11 @@ ENGINES: Mapping[str, EngineKind] = MappingProxyType({
     "animeme": EngineKind("Dominated animemes", "A shape over time for every phoneme, learnt from the captures, "
                           "and how far each rules its neighbours; smooth, and at once.",
                           lambda database, *_: AnimemeEngine(database), can_hold=True),
+    "iface-paper": EngineKind("Speaking face, as printed", "Goes by the sound alone, as the paper of 2002 prints it: a "
+                              "perceptron for each class of sound.",
+                              lambda database, *_: IfaceEngine(database, PAPER), listens=True),
+    "iface": EngineKind("Speaking face", "Goes by the sound alone, as it does live: no words are needed, and there is "
+                        "nothing to pin.", lambda database, *_: IfaceEngine(database), listens=True),
     PRINTED: _search(PRINTED, "Search, as printed", "The constrained search as the paper of 2008 prints it: one path, "
                      "no context, straight silences."),
     "search-single": _search("search-single", "Search, best path alone", "The motion of the best path alone: every "
@@ -128,7 +137,13 @@ def make_engine(
 def make_engines(
     names: Sequence[str], database: MotionDatabase, open_kernels: Callable[[], SearchKernels]
 ) -> dict[str, MotionEngine]:
-    """Make the engines ``names`` (all when empty), each on kernels of its own, for those keep one engine's costs."""
+    """Make the engines ``names``, each on kernels of its own, for those keep one engine's costs.
+
+    None named are all; but a database that keeps no sound has nothing for those that listen.
+    """
     for name in names:
         engine_kind(name)
-    return {name: make_engine(name, database, open_kernels()) for name in names or ENGINES}
+    if not names:
+        is_audible = any(database.audio_bytes(sentence.name) is not None for sentence in database.sentences)
+        names = [name for name, kind in ENGINES.items() if is_audible or not kind.listens]
+    return {name: make_engine(name, database, open_kernels()) for name in names}
