@@ -15,6 +15,7 @@ from app.verbs.bench import bench
 from app.verbs.growth import db
 from app.verbs.iface import train_iface
 from app.verbs.own_face import fit_face
+from app.verbs.strip import strip
 from app.verbs.tracking import track
 from core.errors import UserFacingError
 
@@ -56,6 +57,7 @@ app.command()(pipeline.lipsync)
 app.command()(pipeline.curves)
 app.command()(pipeline.poses)
 app.command()(units.units)
+app.command()(strip)
 app.command()(stimuli.stimuli)
 app.command("stimuli-table")(stimuli.stimuli_table)
 app.command()(live.live)

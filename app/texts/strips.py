@@ -1,0 +1,36 @@
+"""All words of film strips and the dialog that asks for them. ``{names}`` are filled in."""
+
+from __future__ import annotations
+
+TIME = "{time_s:.2f} s"
+SILENCE = "–"
+CAPTURED = "captured"
+NOT_CAPTURED = "The database '{database}' holds no capture of these words at this length."
+
+ACTION = "Film &strip…"
+TITLE = "Film strip"
+MOMENTS = "Moments"
+EVEN = ("even", "even", "So many moments, evenly over what is said")
+CHOSEN = ("chosen", "chosen", "Moments that you name, in seconds")
+COUNT_TIP = "How many moments"
+TIMES_TIP = "Seconds, with spaces between"
+TIMES_HINT = "0.35 0.8 1.2"
+ADD_PLAYHEAD = "Add playhead"
+ADD_PLAYHEAD_TIP = "Add the moment at the playhead"
+ROWS = "Rows"
+ON_SHOW = "motion on show"
+ROW_TIP = "Anew by the chosen engine with this emotion all through, without curves and polish drawn by hand"
+CAPTURE = "capture"
+CAPTURE_TIP = "What was captured of these very words"
+SHOWS = "Shows"
+FACE_SIZE = "Each face"
+GROUND = "Ground"
+DARK, WHITE = "dark studio", "white"
+TO = "Write to"
+EXPORT = "Export"
+NEEDS_MOTION = "Synthesise speech first, and the face is there to be shown."
+NEEDS_ROW = "Choose one row or more."
+NO_TIME = "'{text}' is no moment in seconds."
+DRAWING = "Drawing the film strip"
+SAVED = "Saved {path}"
+DIED = "The process that draws the film strip ended before it was done."
