@@ -11,41 +11,36 @@ from typing import NamedTuple
 import numpy as np
 
 from core.animeme.artist_curves import CurveReading, curve_files
-from core.errors import UserFacingError
 from core.iface.ceiling import reached, said_again
 from core.iface.comparison import Part, Trainer, Yardstick, compare, estimates, split_by_frame, split_by_time
 from core.iface.heard_takes import HeardTake, database_takes, recorded_takes
 from core.iface.lip_scores import captured_scores
+from core.iface.model_file import MODERN, PAPER, VARIANTS
+from core.iface.modern_training import train_modern_face
+from core.iface.paper_training import train_paper_face
 from core.iface.speaking import SpeakingFace
 from core.iface.speech_features import RATE_HZ
 from core.iface.told import told_estimates
+from core.iface.training import N_NOISES, check_variant
 from core.motion.database import MotionDatabase
 from core.motion.marker_set import MarkerSet
 from core.progress import SILENT, Progress
 
-FACES = ("paper", "modern")
 _AGAIN = ("again", "once more")  # seeds of the takes that the ceiling is measured on
-_N_NOISES = 2  # in which each training sentence is heard besides, as when the default face is trained
 
 
-def trainers(names: Sequence[str] = FACES) -> dict[str, Trainer]:
-    """Return what trains the faces ``names``; raises `UserFacingError` for one that there is not."""
-    known = {"paper": _train_paper, "modern": _train_modern}
-    for name in names:
-        if name not in known:
-            raise UserFacingError(f"There is no face '{name}' to train.", f"Choose among {', '.join(FACES)}.")
-    return {name: known[name] for name in names}
+def trainers(variants: Sequence[str] = VARIANTS) -> dict[str, Trainer]:
+    """Return what trains the ``variants`` of the face; raises `UserFacingError` for one that there is not."""
+    for variant in variants:
+        check_variant(variant)
+    return {variant: {PAPER: _train_paper, MODERN: _train_modern}[variant] for variant in variants}
 
 
 def _train_paper(takes: Sequence[HeardTake], markers: MarkerSet, progress: Progress) -> SpeakingFace:
-    from core.iface.paper_training import train_paper_face
-
     return train_paper_face(takes, markers.rest, progress=progress)
 
 
 def _train_modern(takes: Sequence[HeardTake], markers: MarkerSet, progress: Progress) -> SpeakingFace:
-    from core.iface.modern_training import train_modern_face
-
     return train_modern_face(takes, markers, progress=progress)
 
 
@@ -60,9 +55,9 @@ def bench_database(
     or is without sound.
     """
     recordings = database.held_out_recordings("test")
-    takes = database_takes(database, progress.part(0.0, 0.1), _N_NOISES)
+    takes = database_takes(database, progress.part(0.0, 0.1), N_NOISES)
     tune, test = (
-        recorded_takes(database, database.held_out_recordings(split), progress.part(0.1, 0.15), _N_NOISES)
+        recorded_takes(database, database.held_out_recordings(split), progress.part(0.1, 0.15), N_NOISES)
         for split in ("tune", "test")
     )
     split = Part(takes, test)
@@ -97,7 +92,7 @@ def bench_curves(
     from core.iface.curve_takes import curve_takes
 
     units = load_marker_units()
-    takes = curve_takes(curve_files(paths, reading), reading, units, progress.part(0.0, 0.5), _N_NOISES)
+    takes = curve_takes(curve_files(paths, reading), reading, units, progress.part(0.0, 0.5), N_NOISES)
     kept = tuple(name for name, keep in zip(units.markers.names, units.kept) if keep)
     groups = {group: tuple(n for n in names if n in kept) for group, names in units.markers.groups.items()}
     markers = MarkerSet(kept, units.markers.rest[units.kept], groups)

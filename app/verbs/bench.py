@@ -158,15 +158,16 @@ def bench_iface(
     rate: Rate = None,
     audio_dir: AudioDir = None,
     lexicon: Lexicon = None,
-    faces: Annotated[list[str] | None, typer.Option("--face", help="paper or modern; both when absent.")] = None,
+    variant: Annotated[list[str] | None, typer.Option(help="paper or modern; both when absent.")] = None,
     json: Json = False,
 ) -> None:
     """Measure faces that hear, trained anew: tables like the paper's, by sentence and by frame; curves by time."""
     from app import iface_bench
     from app.iface_tables import as_table
     from core.animeme.artist_curves import CurveReading
+    from core.iface.model_file import VARIANTS
 
-    trainers = iface_bench.trainers(faces or iface_bench.FACES)
+    trainers = iface_bench.trainers(variant or VARIANTS)
     with progress_bar("bench") as progress:
         if curves:
             reading = CurveReading(shape_names, shape_sheet, rate, audio_dir, lexicon)

@@ -115,7 +115,7 @@ def test_curves_are_measured_by_what_they_move(tmp_path, monkeypatch):
 def test_the_verb_tells_what_it_cannot_measure(tmp_path):
     runner = CliRunner()
     for words, said in (
-        (["--face", "old"], "no face 'old'"),
+        (["--variant", "old"], "no variant 'old'"),
         (["--controls", str(tmp_path)], "no curves in"),
         (["--controls", str(tmp_path), "--audio-dir", str(tmp_path / "gone")], "no folder of sounds"),
     ):
