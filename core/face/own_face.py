@@ -25,7 +25,7 @@ from core.face.own_face_protected import Protected
 from core.face.own_face_scan import Scan
 from core.face.own_face_shapes import carried_shapes
 from core.face.own_face_surface import Surface
-from core.face.own_face_texture import scan_texture, unwrapped
+from core.face.own_face_texture import SIZE_PX, scan_texture, unwrapped
 from core.face.own_face_warp import LandmarkWarp, Placement, check_on_surface, doubtful_points, place_scan
 from core.progress import SILENT, Progress
 
@@ -139,11 +139,11 @@ def fit_own_face(
     return OwnFace(face, placed, placement, unwrapped(generic), before, after, tuple(doubtful), tuple(notes))
 
 
-def painted(own: OwnFace, progress: Progress = SILENT) -> Face:
-    """Return the fitted face with the colours of its scan; as it is, where the scan has none."""
+def painted(own: OwnFace, progress: Progress = SILENT, size_px: int = SIZE_PX) -> Face:
+    """Return the fitted face with the colours of its scan, in a picture of ``size_px``; as it is, where it has none."""
     if not own.scan.has_colour:
         return own.face
-    return _with_texture(own, scan_texture(own.face, own.uv, own.scan, progress=progress))
+    return _with_texture(own, scan_texture(own.face, own.uv, own.scan, size_px, progress))
 
 
 def painted_by_photo(

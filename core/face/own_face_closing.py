@@ -86,7 +86,9 @@ def close(
         pull = areas * weight
         hold = POINT_AREA_MM2[0] * (POINT_AREA_MM2[1] / POINT_AREA_MM2[0]) ** along
         system = csc_matrix(diags(pull) + reach**4 * bending + fixed + hold * clicked)
-        moved = splu(system).solve(pull[:, None] * wanted + hold * pulled)
+        # symmetric and positive definite: no pivots are looked for, which halves the work
+        factors = splu(system, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        moved = factors.solve(pull[:, None] * wanted + hold * pulled)
     progress.step(1.0)
     return Closed(moved, weight)
 

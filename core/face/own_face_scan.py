@@ -99,6 +99,11 @@ def _areas(mesh: RawMesh) -> np.ndarray:
 def _read_other(path: Path) -> RawMesh:
     if path.suffix.lower() not in SUFFIXES:
         raise UserFacingError(f"{path} is no scan that can be read.", f"Known are {', '.join(SUFFIXES)}.")
+    if path.suffix.lower() in (".gltf", ".glb"):
+        from core.rig.gltf_mesh import read_gltf_shapes
+
+        # trimesh drops texture coordinates where there is no imaging library beside it
+        return read_gltf_shapes(path)[0]
     return read_mesh(path)
 
 
@@ -144,7 +149,9 @@ def _picture(path: Path, texture: Path | None) -> np.ndarray | None:
 def _named_by_obj(path: Path) -> Path | None:
     """Return the picture that an OBJ file's material library names, if it lies in the same folder or below."""
     with path.open(encoding="utf-8", errors="replace") as file:
-        libraries = [line.split(maxsplit=1)[1].strip() for line in file if line.startswith("mtllib ") and line[7:].strip()]
+        libraries = [
+            line.split(maxsplit=1)[1].strip() for line in file if line.startswith("mtllib ") and line[7:].strip()
+        ]
     for library in libraries:
         text = _inside(path, library)
         if text is None or text.stat().st_size > MOST_BYTES:
