@@ -10,9 +10,10 @@ from app.panels.pane import label
 from app.texts import compare as texts
 from app.theme import STEP
 from core.evaluation.side_by_side import CAPTURED
-from core.synthesis.registry import ENGINES
+from core.synthesis.registry import DEFAULT_ENGINE, ENGINES
 
 _WIDTH_PX = 208
+_BESIDE_SEARCHES = "animeme"
 
 
 class EngineChoices(QWidget):
@@ -68,7 +69,8 @@ class EngineChoices(QWidget):
             chosen.setItemData(row, texts.CAPTURED_TIP if is_there else texts.CAPTURED_NONE_TIP,
                                Qt.ItemDataRole.ToolTipRole)  # fmt: skip
             if rows[n] == row and not is_there:
-                rows[n], took_over = next(i for i in range(row) if i != rows[1 - n]), True
+                beside = self.one.itemData(rows[1 - n])
+                rows[n], took_over = chosen.findData(usual_beside(beside)), True
         self._set(*rows)
         return took_over
 
@@ -84,6 +86,11 @@ class EngineChoices(QWidget):
             one, other = (one, self._before[0]) if chosen is self.one else (self._before[1], other)
         self._set(one, other)
         self.changed.emit()
+
+
+def usual_beside(name: str) -> str:
+    """Return the engine that another is held against where nobody chose."""
+    return _BESIDE_SEARCHES if name in ENGINES and ENGINES[name].searches else DEFAULT_ENGINE
 
 
 def _engines(tip: str) -> QComboBox:

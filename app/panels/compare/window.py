@@ -16,7 +16,7 @@ from app.emotion_colours import emotion_colours
 from app.export import VideoSettings
 from app.icons import icon
 from app.jobs import JobRunner
-from app.panels.compare.choices import EngineChoices
+from app.panels.compare.choices import EngineChoices, usual_beside
 from app.panels.compare.faces import ComparedFaces
 from app.panels.compare.figures import FiguresTable
 from app.panels.compare.graph import CompareGraph
@@ -51,7 +51,6 @@ _FIGURES_PX, _LANE_CHOICE_PX = 448, 152
 _AFTER_MS = 300
 _FILM_PX = (1280, 720)
 _FOLDER = "compare"
-_SECOND_ENGINE = "animeme"
 
 
 class CompareWindow(QWidget):
@@ -68,7 +67,7 @@ class CompareWindow(QWidget):
         self.capture: KnownCapture | None = None
         self._capture_of: tuple | None = None
         self._controls: dict[str, ControlTrack] | None = None
-        self._is_stale, self._was_open = True, False
+        self._is_stale, self._was_open, self._note = True, False, ""
         self._settings = window_settings()
         self._soon = QTimer(self, singleShot=True, interval=_AFTER_MS)
         self.setWindowTitle(texts.TITLE)
@@ -219,7 +218,7 @@ class CompareWindow(QWidget):
             self._was_open = True
             asked = self.authoring.document.engine
             one = asked if self.choices.offers(asked) else DEFAULT_ENGINE
-            self.choices.choose(one, _SECOND_ENGINE if one != _SECOND_ENGINE else DEFAULT_ENGINE)
+            self.choices.choose(one, usual_beside(one))
         self.show()
         self.raise_()
         self.activateWindow()
@@ -269,8 +268,8 @@ class CompareWindow(QWidget):
         self.jobs.start("capture", texts.FINDING_CAPTURE, wanted, find_capture, found)
 
     def _compare(self) -> None:
-        if self.choices.offer_capture(self.capture is not None):
-            self.status.say(texts.CAPTURED_NONE_TIP)
+        took_over = self.choices.offer_capture(self.capture is not None)
+        self._note = texts.CAPTURED_NONE_TIP if took_over else ""
         document, authoring, names = self.authoring.document, self.authoring, self.choices.names
         made = [name for name in names if name != CAPTURED]
         request = CompareRequest(
@@ -284,7 +283,7 @@ class CompareWindow(QWidget):
 
     def _on_compared(self, compared: Compared) -> None:
         self.compared, self._controls, self._is_stale = compared, None, False
-        self.status.say(" · ".join(compared.warnings))
+        self.status.say(" · ".join(part for part in (self._note, *compared.warnings) if part))
         self._show()
         self._find_controls()
 
