@@ -108,6 +108,21 @@ def settings_folder(tmp_path, monkeypatch, known_backends):
     return folder
 
 
+@pytest.fixture(scope="session")
+def own_faces(tmp_path_factory):
+    """A data folder with this machine's faces, and nothing else of its user's."""
+    from core.face.characters import CHARACTERS
+    from core.face.default_face import character_path
+
+    faces = [character_path(name) for name in CHARACTERS]
+    if not all(path.is_file() for path in faces):
+        pytest.skip("the faces are not on this machine")
+    folder = tmp_path_factory.mktemp("faces")
+    for path in faces:
+        shutil.copy(path, folder)
+    return folder
+
+
 @pytest.fixture
 def open_window(qtbot, qapp, settings_folder, monkeypatch):
     """Return a function that shows a main window without a demo, with a face if asked; all are closed at the end."""

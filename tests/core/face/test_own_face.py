@@ -235,7 +235,7 @@ def test_a_point_far_off_is_left_out_and_named(face, truth, true_points, few_rou
 
 def test_points_that_are_not_on_the_scan_are_one_sentence(face, truth, true_points):
     scan = scan_of(face, truth)
-    floating = clicked({key: place + [0, 0, 40.0] for key, place in true_points.items()})
+    floating = clicked({key: place + np.array([0, 0, 40.0]) for key, place in true_points.items()})
     with pytest.raises(UserFacingError, match="off its surface") as caught:
         fit_own_face(face, scan, floating)
     assert "another scan" in caught.value.remedy

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
@@ -11,8 +9,6 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLineEdit, QStyle, QStyleOptionSlider
 
 from core.animeme.controls import ControlTrack
-from core.face.characters import CHARACTERS
-from core.face.default_face import character_path
 from core.pipeline.gltf import write_glb
 from core.rig.key_poses import KeyPoses, load_key_poses
 from tests.core.rig.small_rigs import small_rig
@@ -20,18 +16,6 @@ from tests.core.rig.small_rigs import small_rig
 WAIT_MS = 20_000
 _AS_LIT_SKIN = 120  # the empty studio is darker
 _LEFT = Qt.MouseButton.LeftButton
-
-
-@pytest.fixture(scope="session")
-def own_faces(tmp_path_factory):
-    """A data folder with this machine's faces, and nothing else of its user's."""
-    faces = [character_path(name) for name in CHARACTERS]
-    if not all(path.is_file() for path in faces):
-        pytest.skip("the faces are not on this machine")
-    folder = tmp_path_factory.mktemp("faces")
-    for path in faces:
-        shutil.copy(path, folder)
-    return folder
 
 
 @pytest.fixture
