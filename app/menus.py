@@ -10,7 +10,7 @@ from app import texts
 from app.actions import frame_rate_options
 from app.project_menu import ProjectMenu
 from app.settings import window_settings
-from app.texts import compare, curves, importing, live, own_face, poses, units
+from app.texts import compare, curves, importing, live, own_face, poses, strips, units
 from core.speech.emotion import EMOTIONS
 
 if TYPE_CHECKING:
@@ -42,6 +42,7 @@ def _file(window: MainWindow) -> None:
     file.addSeparator()
     add(file, "save_film", texts.SAVE_FILM, "", window.ask_save_film)
     add(file, "export", texts.EXPORT_ACTION, "Ctrl+E", window.export_dialog.open_for)
+    add(file, "strip", strips.ACTION, "", window.strip_dialog.open_for)
     file.addSeparator()
     add(file, "quit", texts.ACTION_QUIT, "Ctrl+Q", window.close)
 

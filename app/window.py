@@ -27,6 +27,7 @@ from app.panels.motion import MotionPane
 from app.panels.poses.window import KeyPosesWindow
 from app.panels.preview import PreviewPane
 from app.panels.status import StatusLine
+from app.panels.strip_dialog import StripDialog
 from app.panels.timeline.bar import TimelinePane
 from app.panels.timeline.timeline import Timeline
 from app.panels.units.window import UnitsWindow
@@ -69,6 +70,7 @@ class MainWindow(AskingWindow):
         self.actions = Actions(self)
         self.lexicon = LexiconDialog(authoring.jobs, self)
         self.export_dialog = ExportDialog(authoring, self.settings, self)
+        self.strip_dialog = StripDialog(authoring, self.settings, self)
         self.importing = ImportWindow(authoring, self)
         self.key_poses = KeyPosesWindow(authoring, self)
         self.compare = CompareWindow(authoring, self)
