@@ -1,0 +1,1 @@
+"""The window in which a face is tracked in a video."""
