@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from core.rig.rig import Rig
 
 CELL_PX = (256, 320)
 _COLUMNS = 4  # as in the paper
-_UNIT_AT = (-2.0, 0.0, 2.0)
+_UNIT_AT, _UNIT_COLUMNS = (-2.0, 0.0, 2.0), 9
 
 
 def drawn_figure(character: str, progress: Progress = SILENT, cell_px: tuple[int, int] = CELL_PX) -> np.ndarray:
@@ -35,13 +35,18 @@ def drawn_figure(character: str, progress: Progress = SILENT, cell_px: tuple[int
     return _in_rows(cells, tuple(paper_keyframes()), texts.FIGURE_DRAWN.format(face=character))
 
 
-def captured_figure(
-    keyframes: Keyframes, rig: FaceRig, name: str, progress: Progress = SILENT, cell_px: tuple[int, int] = CELL_PX
-) -> np.ndarray:
-    """Return figure 4 as markers move a face, uint8, shape (height, width, 3); ``name`` is the database's."""
+def marker_figure(
+    keyframes: Keyframes, rig: FaceRig, title: str, drawn: Collection[str] = (), progress: Progress = SILENT,
+    cell_px: tuple[int, int] = CELL_PX,
+) -> np.ndarray:  # fmt: skip
+    """Return figure 4 as markers move a face, uint8, shape (height, width, 3).
+
+    drawn : keyframes that stand for captures that there are not, which is said under them
+    """
     poses = [rig.pose((shape - keyframes.neutral).astype(np.float32)) for shape in keyframes.shapes]
     cells = _cells(rig.face, poses, progress, cell_px)
-    return _in_rows(cells, keyframes.names, texts.FIGURE_CAPTURED.format(name=name))
+    notes = [texts.NOTE_DRAWN if name in drawn else "" for name in keyframes.names] if drawn else ()
+    return _in_rows(cells, keyframes.names, title, notes)
 
 
 def units_figure(
@@ -53,12 +58,13 @@ def units_figure(
     n_units = len(mean.deviations)
     poses = [rig.pose(mean.moved(i, at).deformation().astype(np.float32)) for at in _UNIT_AT for i in range(n_units)]
     cells = _cells(rig.face, poses, progress, cell_px)
-    names = unit_names(units, expression)
-    rows = [
-        PictureRow(cells[r * n_units : (r + 1) * n_units], f"{at:+.0f} σ" if at else "0",
-                   names if r == len(_UNIT_AT) - 1 else ())
-        for r, at in enumerate(_UNIT_AT)
-    ]  # fmt: skip
+    names, rows = unit_names(units, expression), []
+    for first in range(0, n_units, _UNIT_COLUMNS):
+        stop = min(first + _UNIT_COLUMNS, n_units)
+        for r, at in enumerate(_UNIT_AT):
+            captions = names[first:stop] if r == len(_UNIT_AT) - 1 else ()
+            rows.append(PictureRow(cells[r * n_units + first : r * n_units + stop], f"{at:+.0f} σ" if at else "0",
+                                   captions))  # fmt: skip
     return picture_grid(rows, texts.FIGURE_UNITS)
 
 
@@ -74,9 +80,12 @@ def _cells(face, poses: Sequence[np.ndarray], progress: Progress, cell_px: tuple
     return list(face_pictures((face,), at_once, len(poses), "face", *cell_px, progress))
 
 
-def _in_rows(cells: Sequence[np.ndarray], names: Sequence[str], title: str) -> np.ndarray:
+def _in_rows(cells: Sequence[np.ndarray], names: Sequence[str], title: str, notes: Sequence[str] = ()) -> np.ndarray:
     starts = range(0, len(cells), _COLUMNS)
-    rows = [PictureRow(cells[at : at + _COLUMNS], captions=_lettered(names[at : at + _COLUMNS], at)) for at in starts]
+    spans = [slice(at, at + _COLUMNS) for at in starts]
+    rows = [
+        PictureRow(cells[span], captions=_lettered(names[span], span.start), notes=notes[span]) for span in spans
+    ]  # fmt: skip
     return picture_grid(rows, title)
 
 

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from app.demo import open_named
-from app.figures import captured_figure, drawn_figure, units_figure
+from app.figures import drawn_figure, marker_figure, units_figure
 from app.pictures import FaceRig
+from app.texts import units as texts
 from core.errors import UserFacingError
 from core.face.characters import CHARACTERS, DEFAULT
 from core.face.default_face import FaceUnavailable, character_face
@@ -78,7 +79,7 @@ def run(job: UnitsJob, progress: Progress = SILENT) -> dict[str, object]:
         "outputs": [str(path) for path in outputs],
     }  # fmt: skip
     if outputs:
-        _draw(job, database, units, keyframes, progress.part(0.3, 1.0))
+        _draw(job, database, units, keyframes, missing, progress.part(0.3, 1.0))
     return answer
 
 
@@ -155,15 +156,17 @@ def _off_mm(wanted: np.ndarray, found: np.ndarray) -> float:
 
 
 def _draw(
-    job: UnitsJob, database: MotionDatabase, units: MotionUnits, keyframes: Keyframes, progress: Progress
-) -> None:
+    job: UnitsJob, database: MotionDatabase, units: MotionUnits, keyframes: Keyframes, missing: tuple[str, ...],
+    progress: Progress,
+) -> None:  # fmt: skip
     rig = FaceRig.of(job.face, database.markers, progress=progress.part(0.0, 0.2))
     if job.picture is not None:
         stage = progress.part(0.2, 0.6)
         if job.keyframes == DRAWN:
             picture = drawn_figure(job.face, stage)
         else:
-            picture = captured_figure(keyframes, rig, database.name, stage)
+            title = texts.FIGURE_CAPTURED.format(name=database.name)
+            picture = marker_figure(keyframes, rig, title, missing, stage)
         _write(job.picture, picture)
     if job.units_picture is not None:
         expression = next(iter(units.expressions), NEUTRAL)

@@ -5,6 +5,7 @@ from __future__ import annotations
 SPEECH_UNIT = "speech {number}"
 FIGURE_DRAWN = "Keyframes as drawn on the face “{face}”"
 FIGURE_CAPTURED = "Keyframes as captured in “{name}”"
+NOTE_DRAWN = "not captured, drawn"
 FIGURE_UNITS = "Motion units, two standard deviations to either side"
 
 TITLE = "Motion units"
@@ -59,7 +60,7 @@ BOUNDED = "0 to 1"
 BOUNDED_TIP = "Keep all weights within 0 and 1, as rigs want them"
 KEYFRAMES_OFF = "keyframes come within {off:.2f} mm of these units"
 UNITS_OFF = "units come within {off:.2f} mm of these keyframes"
-NOT_CAPTURED = "Not captured, so drawn: {names}."
+NOT_CAPTURED = "not captured, so drawn: {names}"
 CURVE_TIP = (
     "Share of the variance by number of units, in the colours of the emotions: neutral speech by its own units, an "
     "expression's by what speech leaves of it"

@@ -210,7 +210,13 @@ class UnitsWindow(QWidget):
         """Choose where the figure of the keyframes goes."""
         keyframes = self.draft.keyframes
         if keyframes is not None:
-            self._save(texts.SAVE_KEYFRAMES, texts.FILE_KEYFRAMES, {"keyframes": keyframes})
+            learned, rig = self.draft.learned, self.authoring.rig
+            is_captured = self.draft.source == texts.CAPTURED[0]
+            title = texts.FIGURE_CAPTURED.format(name=learned.request.database.name)
+            if not is_captured and rig is not None:
+                title = texts.FIGURE_DRAWN.format(face=rig.face.name)
+            what = {"keyframes": keyframes, "title": title, "drawn": learned.not_captured if is_captured else ()}
+            self._save(texts.SAVE_KEYFRAMES, texts.FILE_KEYFRAMES, what)
 
     def ask_save_units(self) -> None:
         """Choose where the figure of the units goes."""
@@ -228,8 +234,7 @@ class UnitsWindow(QWidget):
         if name:
             path = Path(name) if Path(name).suffix.lower() == ".png" else Path(f"{name}.png")
             remember_folder(self._settings, _FOLDER, path)
-            source = self.authoring.document.database.name
-            request = FigureRequest(path, rig, source, **what)
+            request = FigureRequest(path, rig, **what)
             self.jobs.start("figure", texts.DRAWING, request, draw,
                             lambda path: self.status.say(texts.SAVED.format(path=path)))  # fmt: skip
 
@@ -261,10 +266,15 @@ class UnitsWindow(QWidget):
         self.source.button(draft.source).setChecked(True)
         bounds = (0.0, 1.0) if draft.bounded else _WEIGHTS
         self.weights.show_values(() if keyframes is None else keyframes.names, draft.weights, *bounds)
-        self.off.setText((texts.UNITS_OFF if draft.by_keyframes else texts.KEYFRAMES_OFF).format(off=draft.off_mm)
-                         if keyframes is not None else "")  # fmt: skip
+        self.off.setText(self._off_in_words() if keyframes is not None else "")
         self.view.show_pose(draft.moved.astype(np.float32))
         self.pane.show_content()
+
+    def _off_in_words(self) -> str:
+        draft = self.draft
+        off = (texts.UNITS_OFF if draft.by_keyframes else texts.KEYFRAMES_OFF).format(off=draft.off_mm)
+        drawn = draft.learned.not_captured if draft.source == texts.CAPTURED[0] else ()
+        return " · ".join([off, texts.NOT_CAPTURED.format(names=", ".join(drawn))] if drawn else [off])
 
     def _show_covered(self) -> None:
         units = self.draft.learned.units

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from app.child_process import run_apart
-from app.figures import captured_figure, units_figure
+from app.figures import marker_figure, units_figure
 from app.pictures import FaceRig
 from app.texts import units as texts
 from core.errors import UserFacingError
@@ -79,13 +79,14 @@ def learn(request: LearnRequest, progress: Progress) -> Learned:
 class FigureRequest:
     """A figure to draw: of keyframes, or of the units of an expression where there are none.
 
-    name : what the figure's title calls the keyframes' source
+    title, drawn : of the figure of keyframes, see `app.figures.marker_figure`
     """
 
     path: Path
     rig: FaceRig
-    name: str
     keyframes: Keyframes | None = None
+    title: str = ""
+    drawn: tuple[str, ...] = ()
     units: MotionUnits | None = None
     expression: str = NEUTRAL
 
@@ -97,7 +98,7 @@ def draw(request: FigureRequest, progress: Progress) -> Path:
 
 def _draw(request: FigureRequest, progress: Progress) -> Path:
     if request.keyframes is not None:
-        picture = captured_figure(request.keyframes, request.rig, request.name, progress)
+        picture = marker_figure(request.keyframes, request.rig, request.title, request.drawn, progress)
     else:
         picture = units_figure(request.units, request.rig, request.expression, progress)
     with swapped_in(request.path) as beside:
