@@ -27,9 +27,9 @@ class DescentSettings:
     decay : share of the weights that a step takes away, times its length
     """
 
-    n_passes: int = 80
-    step: float = 2e-3
-    batch: int = 128
+    n_passes: int = 60
+    step: float = 3e-3
+    batch: int = 256
     noise: float = 0.5
     decay: float = 1e-4
 

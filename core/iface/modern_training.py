@@ -48,6 +48,8 @@ def train_modern_face(
 
     Raises `UserFacingError` without neutral speech; progress may cancel it between passes.
     """
+    from threadpoolctl import threadpool_limits
+
     settings, takes = settings or ModernSettings(), usable_takes(takes)
     progress.step(0.0, "motion units")
     units, silence = units_of(takes, settings.n_utterance, settings.n_expression), silence_of(takes)
@@ -57,7 +59,8 @@ def train_modern_face(
     for n in range(settings.n_nets):
         stage = progress.part(0.05 + 0.95 * n / settings.n_nets, 0.05 + 0.95 * (n + 1) / settings.n_nets)
         stage.step(0.0, f"perceptron {n + 1} of {settings.n_nets}")
-        net = descend(hearing, wanted, told, settings.hidden, settings.descent, seed * settings.n_nets + n, stage)
+        with threadpool_limits(1):  # batches are too small to share out, and the sums of one thread are always the same
+            net = descend(hearing, wanted, told, settings.hidden, settings.descent, seed * settings.n_nets + n, stage)
         nets.append(net.taking(hearing.mean, hearing.scale).giving(rest, mixing))
     progress.step(1.0, "trained")
     neutral = markers.rest.astype(np.float32)
