@@ -19,6 +19,7 @@ ANY = "any"
 _TO_PICTURE = np.array([1.0, -1.0, 1.0])
 # How far a head turns while it speaks (sine of the angle), and how much of a mean deformation a frame may have.
 _TURN, _MEAN_SHARE = 0.15, 1.0
+_CAMERA_MM = 900.0
 CLICKED = ("mouth_corner_right", "mouth_corner_left", "outer_eye_right", "outer_eye_left")
 
 
@@ -75,6 +76,16 @@ class FaceModel:
     def of_database(cls, database: MotionDatabase, expression: str = ANY) -> FaceModel:
         """Learn the units from the sentences of ``database``; see `of` for what is raised."""
         return cls.of(database.markers, units_of_database(database), expression)
+
+    @cached_property
+    def seen(self) -> np.ndarray:
+        """The points at rest as a camera in front sees them, shape (K, 2), mm in the plane of mouth and eyes.
+
+        What lies farther back is smaller. How far the camera is nobody knows; at an arm's length and a half it is wrong
+        by less than a camera without perspective, which would put temples and jaw beside the head.
+        """
+        plane = self.rest[[self.landmarks[name] for name in CLICKED if name in self.landmarks], 2].mean()
+        return self.rest[:, :2] * (_CAMERA_MM / (_CAMERA_MM - (self.rest[:, 2:] - plane)))
 
     @cached_property
     def flat_units(self) -> np.ndarray:

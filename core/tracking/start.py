@@ -71,7 +71,7 @@ def placed(model: FaceModel, clicks: Mapping[str, tuple[float, float]], size_px:
     if apart < SMALLEST_PX:
         raise UserFacingError(f"The points lie only {apart:.0f} pixels apart; a face is tracked from "
                               f"{SMALLEST_PX:.0f} pixels on.", "Use a closer or larger picture.")  # fmt: skip
-    source = model.rest[[model.landmarks[name] for name in used], :2]
+    source = model.seen[[model.landmarks[name] for name in used]]
     # a similarity of the plane is a product of complex numbers
     a, b = ((points - points.mean(axis=0)) @ [1.0, 1.0j] for points in (source, target))
     factor = np.vdot(a, b) / np.vdot(a, a).real

@@ -79,7 +79,7 @@ def starting_points(request: TrackingRequest, size_px: tuple[int, int]) -> tuple
     Points that a hand moved in the first picture are where it put them. Raises `UserFacingError`, see `placed`.
     """
     placement = placed(request.model, request.clicks, size_px)
-    points = placement.pixels(request.model.rest[:, :2])
+    points = placement.pixels(request.model.seen)
     for row, place in _rows(request, 0).items():
         points[row] = place
     return placement, points

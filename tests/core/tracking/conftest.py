@@ -148,7 +148,7 @@ def film():
 
 
 @pytest.fixture(scope="session")
-def clicks(markers):
+def clicks(model):
     """Where mouth and eye corners are in the first picture of any sheet."""
-    flat = markers.rest[:4, :2] * [SCALE, -SCALE] + MIDDLE
+    flat = model.seen[:4] * SCALE + MIDDLE
     return {name: tuple(place) for name, place in zip(LANDMARKS, flat.tolist())}

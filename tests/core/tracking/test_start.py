@@ -13,7 +13,7 @@ SIZE = (640, 480)
 def _clicked(model, turn, scale, shift):
     cos, sin = np.cos(turn), np.sin(turn)
     matrix = scale * np.array([[cos, -sin], [sin, cos]])
-    return {name: tuple(model.rest[model.landmarks[name], :2] @ matrix.T + shift) for name in CLICKED}, matrix
+    return {name: tuple(model.seen[model.landmarks[name]] @ matrix.T + shift) for name in CLICKED}, matrix
 
 
 def _plain(places):
@@ -25,9 +25,9 @@ def _plain(places):
 def test_a_similarity_is_recovered_exactly(model, turn, count):
     clicks, matrix = _clicked(model, turn, 2.3, (300.0, 240.0))
     placement = placed(model, dict(list(clicks.items())[:count]), SIZE)
-    expected = model.rest[:, :2] @ matrix.T + (300.0, 240.0)
-    np.testing.assert_allclose(placement.pixels(model.rest[:, :2]), expected, atol=1e-9)
-    np.testing.assert_allclose(placement.millimetres(expected), model.rest[:, :2], atol=1e-9)
+    expected = model.seen @ matrix.T + (300.0, 240.0)
+    np.testing.assert_allclose(placement.pixels(model.seen), expected, atol=1e-9)
+    np.testing.assert_allclose(placement.millimetres(expected), model.seen, atol=1e-9)
 
 
 def test_the_order_within_a_pair_does_not_matter(model):
@@ -40,6 +40,12 @@ def test_the_order_within_a_pair_does_not_matter(model):
 def test_a_face_on_its_side_is_told_by_its_eyes(model):
     clicks, _ = _clicked(model, 1.6, 2.0, (320.0, 240.0))
     assert named_clicks([clicks[name] for name in CLICKED]) == _plain(clicks)
+
+
+def test_what_lies_far_back_is_seen_smaller(model):
+    far = model.rest[:, 2] < model.rest[list(model.landmarks.values())[:4], 2].mean() - 1.0
+    assert far.any()
+    assert (np.linalg.norm(model.seen, axis=1) < np.linalg.norm(model.rest[:, :2], axis=1))[far].all()
 
 
 @pytest.mark.parametrize("points", [[(1.0, 2.0)], [(1.0, 2.0)] * 3, []])

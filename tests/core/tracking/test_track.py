@@ -32,7 +32,7 @@ def noisy(sheet, request_of):
 
 
 def _errors(track, made, model):
-    return np.linalg.norm(track.points - made.truth(model.rest[:, :2] * [1, -1]), axis=2)
+    return np.linalg.norm(track.points - made.truth(model.seen * [1, -1]), axis=2)
 
 
 def test_constrained_points_are_much_nearer_than_points_alone(noisy, model):
@@ -41,7 +41,7 @@ def test_constrained_points_are_much_nearer_than_points_alone(noisy, model):
     alone = [track.points[0]]
     for before, now in pairwise(looks):
         alone.append(followed(before, now, alone[-1], alone[-1]).points)
-    free = np.linalg.norm(np.array(alone) - made.truth(model.rest[:, :2] * [1, -1]), axis=2)[1:]
+    free = np.linalg.norm(np.array(alone) - made.truth(model.seen * [1, -1]), axis=2)[1:]
     ours = _errors(track, made, model)[1:]
     assert ours.mean() < 0.7
     assert ours.mean() < 0.7 * free.mean()
@@ -95,7 +95,7 @@ def test_a_drag_from_a_wrong_place_is_believed_over_the_pictures(sheet, request_
     jump[6:] = (-70.0, 20.0)
     made = sheet(shift=jump, dark=frozenset(range(3, 6)), turn=0.0 * t)
     request = request_of(made, "jump")
-    truth = made.truth(model.rest[:, :2] * [1, -1])
+    truth = made.truth(model.seen * [1, -1])
     hand = {name: tuple(truth[6, model.names.index(name)]) for name in ("mouth_corner_left", "outer_eye_right")}
     track = track_video(replace(request, corrections={6: hand}))
     assert np.linalg.norm(track.points[7:] - truth[7:], axis=2).mean() < 1.0
@@ -133,7 +133,7 @@ def test_points_out_of_the_picture_are_carried_by_the_others(sheet, request_of, 
     t = np.linspace(0, np.pi, 24)
     made = sheet(shift=np.stack([130.0 * np.sin(t), 0.0 * t], 1))
     track = track_video(request_of(made, "leaving"))
-    truth = made.truth(model.rest[:, :2] * [1, -1])
+    truth = made.truth(model.seen * [1, -1])
     outside = truth[..., 0] > 322
     assert outside.any(axis=0).sum() > 5
     assert track.trust[outside].max() == 0.0

@@ -104,8 +104,8 @@ def test_a_film_that_breaks_off_is_tracked_as_far_as_it_goes(tmp_path, film, she
     track = track_video(TrackingRequest(tmp_path / "cut.avi", model, clicks))
     assert 6 < len(track.points) < 24
     every = track_video(TrackingRequest(whole, model, clicks))
-    sound = len(track.points) - 1  # the last one may be half a picture
-    np.testing.assert_array_equal(track.points[:sound], every.points[:sound])
+    whole_ones = len(track.points) - 1  # the last one may be half a picture
+    np.testing.assert_array_equal(track.points[:whole_ones], every.points[:whole_ones])
 
 
 @pytest.mark.parametrize("suffix", [".avi", ".mp4"])
