@@ -10,7 +10,7 @@ from app import texts
 from app.actions import frame_rate_options
 from app.project_menu import ProjectMenu
 from app.settings import window_settings
-from app.texts import compare, curves, importing, live, own_face, poses, strips, units
+from app.texts import compare, curves, importing, live, own_face, poses, strips, tracking, units
 from core.speech.emotion import EMOTIONS
 
 if TYPE_CHECKING:
@@ -37,6 +37,7 @@ def _file(window: MainWindow) -> None:
     add(file, "database", texts.OPEN_DATABASE, "Ctrl+D", window.ask_database)
     add(file, "demo_database", texts.OPEN_DEMO_DATABASE, "", authoring.open_database)
     add(file, "import", importing.ACTION, "Ctrl+I", window.importing.open_now)
+    add(file, "track", tracking.ACTION, "", lambda: window.tracking.open_now())
     add(file, "save_emotions", texts.SAVE_EMOTIONS, "", window.ask_save_emotions)
     add(file, "lexicon", texts.LEXICON_ACTION, "", window.lexicon.open_now)
     file.addSeparator()

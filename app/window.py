@@ -35,6 +35,7 @@ from app.panels.video import VideoPane
 from app.texts import live as live_texts
 from app.texts import own_face as own_face_texts
 from app.texts import poses as pose_texts
+from app.texts import tracking as tracking_texts
 from app.theme import apply_theme
 from app.versions import Versions
 from core.document.change import Change
@@ -42,6 +43,7 @@ from core.document.change import Change
 if TYPE_CHECKING:
     from app.panels.live.window import LiveWindow
     from app.panels.own_face.window import OwnFaceWindow
+    from app.panels.tracking.window import TrackingWindow
 
 DEMO_START = "demo-neutral"
 HIGHEST_START_FRAME = 10**7
@@ -96,6 +98,19 @@ class MainWindow(AskingWindow):
         made = LiveWindow(self.authoring, self)
         made.project_asked.connect(self.open_file)
         return made
+
+    @cached_property
+    def tracking(self) -> TrackingWindow:
+        """The window in which a face is tracked in a video, made when it is first asked for."""
+        from app.panels.tracking.window import TrackingWindow
+
+        made = TrackingWindow(self.authoring, self)
+        made.import_asked.connect(self._import)
+        return made
+
+    def _import(self, paths: list[Path]) -> None:
+        self.importing.open_now()
+        self.importing.draft.add_files(paths)
 
     # Making
 
@@ -284,6 +299,10 @@ class MainWindow(AskingWindow):
         if fits is not None and fits.has_unsaved_face and not self._gives_up(own_face_texts.CLOSE_UNSAVED):
             event.ignore()
             return
+        tracking = self.__dict__.get("tracking")
+        if tracking is not None and tracking.has_unsaved_track and not self._gives_up(tracking_texts.CLOSE_UNSAVED):
+            event.ignore()
+            return
         self._save_layout()
         self.keeper.close()
         self.importing.shut_down()
@@ -294,6 +313,8 @@ class MainWindow(AskingWindow):
             live.shut_down()
         if fits is not None:
             fits.shut_down()
+        if tracking is not None:
+            tracking.shut_down()
         self.authoring.shut_down()
         for pane in (self.motion, self.preview):
             pane.face_view.release()

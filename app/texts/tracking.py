@@ -4,7 +4,7 @@ from __future__ import annotations
 
 TITLE = "Track a video[*]"
 ACTION = "&Track a video…"
-CLOSE_UNSAVED = "The tracked video was not saved as a capture."
+CLOSE_UNSAVED = "What was tracked in the video is not saved as a capture.\n\nClose, and lose it?"
 
 VIDEO = "VIDEO"
 OPEN = "Open video…"

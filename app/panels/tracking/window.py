@@ -197,6 +197,11 @@ class TrackingWindow(QWidget):
         }.items():  # fmt: skip
             QShortcut(QKeySequence(key), self, activated=done)
 
+    @property
+    def has_unsaved_track(self) -> bool:
+        """Whether something was tracked that no capture holds."""
+        return self.draft.has_unsaved_track
+
     # Time
 
     @property
