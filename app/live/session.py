@@ -32,7 +32,8 @@ class TimedFrame:
     """A frame, and when what it shows was said; times by `time.perf_counter`.
 
     said_s : when the sound at the frame's time was in the air, as far as the device tells; made_s : when it was made
-    look_ahead_s : the part of the wait between the two that the face asks for
+    look_ahead_s : the part of the wait between the two that the face asks for; less than its look-ahead for a frame
+        whose last window of sound ends before it
     """
 
     live: LiveFrame
@@ -208,8 +209,10 @@ class LiveSession:
     def _give(self, frames: list[LiveFrame], began_s: float, made_s: float) -> None:
         ahead_s = self.face.n_ahead / RATE_HZ
         for frame in frames:
-            timed = TimedFrame(frame, began_s + frame.time_s, made_s, ahead_s)
-            self.waits.append((timed.capture_s, ahead_s, frame.compute_s, made_s - timed.said_s))
+            said_s = began_s + frame.time_s
+            asked_s = min(ahead_s, made_s - frame.compute_s - said_s)
+            timed = TimedFrame(frame, said_s, made_s, asked_s)
+            self.waits.append((timed.capture_s, asked_s, frame.compute_s, made_s - said_s))
             self.n_frames += 1
             self._heard(timed)
         outgoing = self.outgoing

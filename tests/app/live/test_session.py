@@ -83,8 +83,9 @@ def test_all_of_a_file_is_spoken_and_counted():
     assert (figures["frames"], figures["dropouts"], figures["overflows"]) == (len(heard.frames), 0, 0)
     assert figures["clipped_samples"] >= 3 and figures["faulty_samples"] == 0
     frame = heard.frames[20]
-    assert frame.look_ahead_s == pytest.approx(0.1)
-    assert frame.made_s - frame.said_s == pytest.approx(frame.capture_s + 0.1 + frame.live.compute_s)
+    assert 0.0 <= frame.look_ahead_s <= 0.1 and frame.capture_s >= -1e-9
+    parts_s = frame.capture_s + frame.look_ahead_s + frame.live.compute_s
+    assert frame.made_s - frame.said_s == pytest.approx(parts_s)
 
 
 def test_a_file_comes_at_the_pace_of_real_time():
@@ -93,7 +94,7 @@ def test_a_file_comes_at_the_pace_of_real_time():
     took_s = time.perf_counter() - began_s
     assert 0.58 < took_s < 1.5
     waits = [f.made_s - f.said_s for f in heard.frames[:-4]]
-    assert min(waits) > 0.1
+    assert min(waits) > 0.1 - 0.010  # the last window of a frame ends up to 10 ms before it
     assert np.median(waits) < 0.1 + 0.05 + (took_s - 0.6)
 
 

@@ -115,7 +115,7 @@ def test_the_face_speaks_with_a_file_and_its_delay_is_shown(speaking, qtbot):
     qtbot.waitUntil(lambda: np.abs(pose(speaking) - poses[0]).max() > 0.01, timeout=WAIT_MS)
     qtbot.waitUntil(lambda: speaking.delay.total.text() != "", timeout=WAIT_MS)
     parts = [float(value.text().split()[0]) for value in speaking.delay.values]
-    assert parts[1] == pytest.approx(100.0) and speaking.delay.median_ms > 100.0
+    assert parts[1] == pytest.approx(100.0, abs=10.0) and speaking.delay.median_ms > 100.0
     assert speaking.delay.drops.text() == texts.DROPS.format(n=0)
     assert speaking.listen_button.text() == texts.STOP and not speaking.pane.is_empty
     click(speaking.listen_button)
