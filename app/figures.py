@@ -49,22 +49,32 @@ def marker_figure(
     return _in_rows(cells, keyframes.names, title, notes)
 
 
+def unit_poses(units: MotionUnits, expression: str = NEUTRAL) -> np.ndarray:
+    """Return what `units_figure` draws: each unit two standard deviations below, at, and above the mean.
+
+    returns : float32, shape (3, n_units, n_points, 3), mm from the neutral face
+    """
+    mean = UnitPose.mean(units, expression)
+    return np.array(
+        [[mean.moved(i, at).deformation() for i in range(len(mean.deviations))] for at in _UNIT_AT], np.float32
+    )
+
+
 def units_figure(
-    units: MotionUnits, rig: FaceRig, expression: str = NEUTRAL, progress: Progress = SILENT,
+    poses: np.ndarray, names: Sequence[str], rig: FaceRig, progress: Progress = SILENT,
     cell_px: tuple[int, int] = CELL_PX,
 ) -> np.ndarray:  # fmt: skip
-    """Return each unit at two standard deviations to either side of the mean, a column each."""
-    mean = UnitPose.mean(units, expression)
-    n_units = len(mean.deviations)
-    poses = [rig.pose(mean.moved(i, at).deformation().astype(np.float32)) for at in _UNIT_AT for i in range(n_units)]
-    cells = _cells(rig.face, poses, progress, cell_px)
-    names, rows = unit_names(units, expression), []
+    """Return each unit to either side of its mean, a column each; see `unit_poses` and `unit_names`."""
+    n_units = len(names)
+    cells = _cells(rig.face, [rig.pose(pose) for at in poses for pose in at], progress, cell_px)
+    rows = []
     for first in range(0, n_units, _UNIT_COLUMNS):
         stop = min(first + _UNIT_COLUMNS, n_units)
         for r, at in enumerate(_UNIT_AT):
             captions = names[first:stop] if r == len(_UNIT_AT) - 1 else ()
-            rows.append(PictureRow(cells[r * n_units + first : r * n_units + stop], f"{at:+.0f} σ" if at else "0",
-                                   captions))  # fmt: skip
+            rows.append(
+                PictureRow(cells[r * n_units + first : r * n_units + stop], f"{at:+.0f} σ" if at else "0", captions)
+            )
     return picture_grid(rows, texts.FIGURE_UNITS)
 
 

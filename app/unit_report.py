@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from app.demo import open_named
-from app.figures import drawn_figure, marker_figure, units_figure
+from app.figures import drawn_figure, marker_figure, unit_names, unit_poses, units_figure
 from app.pictures import FaceRig
 from app.texts import units as texts
 from core.errors import UserFacingError
@@ -170,7 +170,8 @@ def _draw(
         _write(job.picture, picture)
     if job.units_picture is not None:
         expression = next(iter(units.expressions), NEUTRAL)
-        _write(job.units_picture, units_figure(units, rig, expression, progress.part(0.6, 1.0)))
+        poses, names = unit_poses(units, expression), unit_names(units, expression)
+        _write(job.units_picture, units_figure(poses, names, rig, progress.part(0.6, 1.0)))
 
 
 def _write(path: Path, picture: np.ndarray) -> None:

@@ -60,7 +60,7 @@ BOUNDED = "0 to 1"
 BOUNDED_TIP = "Keep all weights within 0 and 1, as rigs want them"
 KEYFRAMES_OFF = "keyframes come within {off:.2f} mm of these units"
 UNITS_OFF = "units come within {off:.2f} mm of these keyframes"
-NOT_CAPTURED = "not captured, so drawn: {names}"
+NOT_CAPTURED = "drawn: {names}"
 CURVE_TIP = (
     "Share of the variance by number of units, in the colours of the emotions: neutral speech by its own units, an "
     "expression's by what speech leaves of it"

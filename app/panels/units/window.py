@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.authoring import Authoring
-from app.figures import unit_names
+from app.figures import unit_names, unit_poses
 from app.icons import icon
 from app.jobs import JobRunner
 from app.panels.face_view import FaceView
@@ -222,7 +222,9 @@ class UnitsWindow(QWidget):
         """Choose where the figure of the units goes."""
         pose = self.draft.pose
         if pose is not None:
-            self._save(texts.SAVE_UNITS, texts.FILE_UNITS, {"units": pose.units, "expression": pose.expression})
+            names = tuple(unit_names(pose.units, pose.expression))
+            what = {"poses": unit_poses(pose.units, pose.expression), "names": names}
+            self._save(texts.SAVE_UNITS, texts.FILE_UNITS, what)
 
     def _save(self, title: str, file_name: str, what: dict[str, object]) -> None:
         rig = self.authoring.rig

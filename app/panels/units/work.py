@@ -77,9 +77,10 @@ def learn(request: LearnRequest, progress: Progress) -> Learned:
 
 @dataclass(frozen=True)
 class FigureRequest:
-    """A figure to draw: of keyframes, or of the units of an expression where there are none.
+    """A figure to draw: of keyframes, or of units where there are none. It travels to another process.
 
     title, drawn : of the figure of keyframes, see `app.figures.marker_figure`
+    poses, names : of the units, see `app.figures.units_figure`
     """
 
     path: Path
@@ -87,8 +88,8 @@ class FigureRequest:
     keyframes: Keyframes | None = None
     title: str = ""
     drawn: tuple[str, ...] = ()
-    units: MotionUnits | None = None
-    expression: str = NEUTRAL
+    poses: np.ndarray | None = None
+    names: tuple[str, ...] = ()
 
 
 def draw(request: FigureRequest, progress: Progress) -> Path:
@@ -100,7 +101,7 @@ def _draw(request: FigureRequest, progress: Progress) -> Path:
     if request.keyframes is not None:
         picture = marker_figure(request.keyframes, request.rig, request.title, request.drawn, progress)
     else:
-        picture = units_figure(request.units, request.rig, request.expression, progress)
+        picture = units_figure(request.poses, request.names, request.rig, progress)
     with swapped_in(request.path) as beside:
         beside.write_bytes(encode_png(picture))
     return request.path

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QStyle, QStyleOptionSlider
 
+from app.panels.units import window as units_window_module
 from app.texts import units as texts
 from core.iface.units_of_database import units_of_database
 
@@ -133,6 +136,33 @@ def test_what_cannot_be_is_told(open_window, qtbot, units_window):
     main.actions.by_name["units"].trigger()
     assert main.units.pane.is_empty and main.units.pane.empty_text == texts.NO_DATABASE
     assert not main.units.save_units.isEnabled() and main.units.units.sliders == []
+
+
+def test_figures_go_to_another_process_as_they_are_on_show(units_window, choose, tmp_path, qtbot, monkeypatch):
+    window, sent = units_window, []
+
+    def drawn(request, _progress):
+        sent.append(pickle.loads(pickle.dumps(request)))
+        return request.path
+
+    monkeypatch.setattr(units_window_module, "draw", drawn)
+    monkeypatch.setattr(type(window.authoring), "rig", property(lambda self: "a face"))
+    window.expression.setFocus()
+    QTest.keyClick(window.expression, Qt.Key.Key_Down)
+    choose(tmp_path / "keyframes", tmp_path / "units.png")
+    for button, name in ((window.save_keyframes, "keyframes.png"), (window.save_units, "units.png")):
+        click(button)
+        qtbot.waitUntil(
+            lambda name=name: window.status.note == texts.SAVED.format(path=tmp_path / name), timeout=WAIT_MS
+        )
+    of_keyframes, of_units = sent
+    np.testing.assert_array_equal(of_keyframes.keyframes.shapes, window.draft.keyframes.shapes)
+    assert "tiny" in of_keyframes.title and of_units.keyframes is None
+    units = window.draft.pose.units
+    n_spoken = len(units.utterance.units)
+    assert of_units.names[-2:] == ("happiness 1", "happiness 2") and of_units.poses.shape[:2] == (3, n_spoken + 2)
+    step = (of_units.poses[2, 1] - of_units.poses[1, 1]).ravel()
+    np.testing.assert_allclose(step, 2 * np.sqrt(units.utterance.variance[1]) * units.utterance.units[1], atol=1e-4)
 
 
 def test_units_are_learned_without_nodes_that_are_removed(units_window, qtbot):
