@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import distance_transform_edt, gaussian_filter
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
@@ -18,7 +19,10 @@ from core.face.own_face_texture import SIZE_PX, SkinTexels, sampled
 from core.progress import SILENT, Progress
 
 FEWEST = 6
-FACES_CAMERA = (0.15, 0.5)  # cosine from which a place is seen, and from which it is seen well
+FACES_CAMERA = (0.2, 0.5)  # cosine from which a place is seen, and from which it is seen well
+EDGE = (0.012, 0.04)  # of the head's width: from its outline on, where a photo may show what lies behind
+SOFT_PX = 5.0  # of a picture of 1024: seams between what is seen and what is filled are so wide
+LIGHT_SHARE, MOST_LIGHT = 0.7, 1.7  # how much of the photo's own light is taken out, and the largest factor
 SHADOW_PX = 640
 BEHIND_MM = 4.0
 WORST_SHARE = 0.06  # of the points' spread in the photo, that a camera may miss them by
@@ -113,8 +117,12 @@ def photo_texture(
     height, width = photo.shape[:2]
     sure *= ((pixels > 0.5) & (pixels < np.array([width, height]) - 0.5)).all(axis=1)
     progress.step(0.4)
-    sure *= depth < _nearest_depth(face, camera, pixels) + BEHIND_MM
+    nearest, inside = _seen_surface(face, camera, pixels)
+    low, high = EDGE
+    sure *= (depth < nearest + BEHIND_MM) * np.clip((inside - low) / (high - low), 0.0, 1.0)
+    sure = _softened(texels, sure)
     colours = sampled(photo, np.stack([pixels[:, 1] - 0.5, pixels[:, 0] - 0.5]))
+    colours = without_light(colours, facing, sure)
     progress.step(0.7)
     whole = np.zeros((size_px, size_px, 4))
     whole[texels.rows, texels.columns] = np.column_stack([colours, sure])
@@ -126,13 +134,61 @@ def photo_texture(
     return texels.picture(mixed, np.minimum(sure + lack, 1.0))
 
 
-def _nearest_depth(face: Face, camera: PhotoCamera, pixels: np.ndarray) -> np.ndarray:
-    """Return how near the skin is that the camera sees in the directions of ``pixels``, mm."""
+def without_light(colours: np.ndarray, normals: np.ndarray, sure: np.ndarray) -> np.ndarray:
+    """Take the light out of a photo's colours (n, 3), 0..255: the renderer brings its own.
+
+    normals : shape (n, 3), unit; sure : shape (n,), how well each colour is known
+
+    Light that comes from afar depends on the normal alone, and smoothly: nine spherical harmonics hold 99 % of it
+    (Ramamoorthi and Hanrahan 2001). They are fitted to the logarithm of each colour, robustly, since brows and hair are
+    dark by themselves. Some of it stays, as skin is not of one colour all round a head either.
+    """
+    known = np.flatnonzero(sure > 0.5)
+    if len(known) < 100:
+        return colours
+    known = known[:: max(1, len(known) // 20_000)]
+    basis = _harmonics(normals)
+    brightness = np.log(np.maximum(colours, 4.0))
+    weights = np.ones((len(known), 1))
+    for _ in range(8):
+        fit = np.linalg.lstsq(basis[known] * weights, brightness[known] * weights, rcond=None)[0]
+        off = np.linalg.norm(brightness[known] - basis[known] @ fit, axis=1, keepdims=True)
+        weights = np.sqrt(1.0 / (1.0 + (off / max(1.5 * float(np.median(off)), 1e-3)) ** 2))
+    light = basis @ fit
+    factor = np.exp(LIGHT_SHARE * (np.median(light[known], axis=0) - light))
+    return np.clip(colours * np.clip(factor, 1.0 / MOST_LIGHT, MOST_LIGHT), 0.0, 255.0)
+
+
+def _harmonics(normals: np.ndarray) -> np.ndarray:
+    x, y, z = normals.T
+    return np.column_stack([np.ones(len(x)), x, y, z, x * y, x * z, y * z, x * x - y * y, 3.0 * z * z - 1.0])
+
+
+def _softened(texels: SkinTexels, sure: np.ndarray) -> np.ndarray:
+    """Smooth what is known how well over the picture, never to more than it was."""
+    whole, there = np.zeros((2, texels.size_px, texels.size_px))
+    whole[texels.rows, texels.columns] = sure
+    there[texels.rows, texels.columns] = 1.0
+    reach = SOFT_PX * texels.size_px / 1024
+    mean = gaussian_filter(whole, reach) / np.maximum(gaussian_filter(there, reach), 1e-6)
+    t = np.clip(2.0 * mean[texels.rows, texels.columns] - 1.0, 0.0, 1.0)
+    return sure * t * t * (3.0 - 2.0 * t)
+
+
+def _seen_surface(face: Face, camera: PhotoCamera, pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return how near the skin is that the camera sees at ``pixels``, mm, and how far from the head's outline that is.
+
+    The latter as a fraction of the head's width.
+    """
     skin = face.triangles[(face.part[face.triangles] == PARTS.index("skin")).all(axis=1)]
     at, depth = camera.seen(face.positions.astype(float))
     low = at.min(axis=0)
-    scale = (SHADOW_PX - 1) / max(float(np.ptp(at, axis=0).max()), 1e-6)
-    owner, bary = covered_pixels(((at - low) * scale)[skin], SHADOW_PX, SHADOW_PX, depth[skin])
+    scale = (SHADOW_PX - 3) / max(float(np.ptp(at, axis=0).max()), 1e-6)
+    owner, bary = covered_pixels(((at - low) * scale + 1.0)[skin], SHADOW_PX, SHADOW_PX, depth[skin])
     seen = np.where(owner >= 0, np.einsum("hwk,hwk->hw", bary, depth[skin][owner]), np.inf)
-    where = np.clip(((pixels - low) * scale).astype(int), 0, SHADOW_PX - 1)
-    return seen[where[:, 1], where[:, 0]]
+    eyes = [face.landmarks["outer_eye_left"], face.landmarks["outer_eye_right"]]
+    # twice the eyes' distance is about the width of a head, however wide its shoulders are
+    width = 2.0 * max(float(np.linalg.norm(np.subtract(*at[eyes]))) * scale, 1.0)
+    inside = distance_transform_edt(owner >= 0) / width
+    where = np.clip(((pixels - low) * scale + 1.0).astype(int), 0, SHADOW_PX - 1)
+    return seen[where[:, 1], where[:, 0]], inside[where[:, 1], where[:, 0]]

@@ -1,8 +1,8 @@
 """Two heads that others made, one fitted to the other both ways: what is left, and whether shapes go the same way.
 
-ICT-FaceKit (MIT) has its own vertices, its own 68 landmarks, which stand for a user's clicks, and its own sculpted shapes
-by the same names. Distances on this head were looked at when stiffness and protection were chosen; the shapes were not,
-but for the size of the neighbourhood of a frame, which changes their likeness by a hundredth.
+ICT-FaceKit (MIT) has its own vertices, its own 68 landmarks, which stand for a user's clicks, and its own sculpted
+shapes by the same names. Distances on this head were looked at when stiffness and protection were chosen; the shapes
+were not, but for the size of a frame's neighbourhood, which changes their likeness by a hundredth.
 """
 
 import json
