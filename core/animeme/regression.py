@@ -9,6 +9,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse import csr_matrix
 
 from core.animeme.design import Scene
+from core.animeme.levels import N_PHONEMES
 
 _DENSE_COLUMNS = 500  # up to here a dense product is quicker than one of sparse matrices
 
@@ -44,7 +45,7 @@ class Regression:
         self.scene, self.shared, self.ridge = scene, shared, ridge
         self._root = np.sqrt(emphasis)[:, None]
         self.said = np.unique(scene.utterances.phoneme)
-        self._row = np.full(scene.phoneme.max(initial=0) + 1, -1)
+        self._row = np.full(N_PHONEMES, -1)
         self._row[self.said] = np.arange(len(self.said))
 
     def solve(self, widths: np.ndarray, targets: np.ndarray) -> Solved:

@@ -15,6 +15,7 @@ from core.animeme.width_search import TrainingSettings
 from core.errors import UserFacingError
 from core.progress import Cancelled, Progress
 from core.speech.phoneme import PHONEME_INDEX, VISEME_OF_PHONEME
+from core.speech.transcript import PhonemeUtterance
 
 PRINTED = replace(forms.PRINTED, emotion_degree=-1)  # all that is said here is neutral
 
@@ -125,6 +126,18 @@ def test_the_journal_of_another_run_or_a_damaged_one_is_not_taken(known_model, b
     assert train_animemes(examples, PRINTED, journal=journal).losses == train_animemes(examples, PRINTED).losses
     journal.write_bytes(b"no archive")
     assert train_animemes(examples, PRINTED, journal=journal).losses == train_animemes(examples, PRINTED).losses
+
+
+def test_phonemes_beyond_the_end_of_the_curves_teach_nothing_and_do_no_harm(known_model, babble, taught):
+    model = known_model(PRINTED)
+    example = taught(model, babble(1, said=30))[0]
+    short = replace(example.track, values=example.track.values[:40])
+    later = (PhonemeUtterance("zh", example.transcript.duration_s, example.transcript.duration_s + 0.1),)
+    said = replace(example.transcript, phonemes=(*example.transcript.phonemes, *later),
+                   duration_s=example.transcript.duration_s + 0.1)  # fmt: skip
+    found = train_animemes([replace(example, transcript=said, track=short)], PRINTED, model.rest)
+    assert not found.model.coefficients["phoneme"][PHONEME_INDEX["zh"]].any()
+    assert found.residual < 0.5
 
 
 def test_a_rare_phoneme_leans_on_its_class_and_one_never_said_is_its_class(known_model, babble, taught):
