@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -38,7 +39,12 @@ class PosedFace:
     def pose(self, values: np.ndarray) -> np.ndarray:
         """Return the vertices, as films show them, for controls of shape (U,): float32, shape (V, 3), mm."""
         track = ControlTrack(self.rig.names, np.asarray(values, float)[None], _ANY_RATE_HZ)
-        return next(ControlledFace(self.rig).controlled(track, PoseTracks(), 0, 1))[0]
+        return next(self._controlled.controlled(track, PoseTracks(), 0, 1))[0]
+
+    @cached_property
+    def _controlled(self) -> ControlledFace:
+        """Kept, as it works out once which places of the lips meet."""
+        return ControlledFace(self.rig)
 
 
 @dataclass(frozen=True)
