@@ -38,9 +38,12 @@ def n_video_frames(duration_s: float, fps: Fraction) -> int:
     return max(1, math.ceil(Fraction(duration_s) * fps - Fraction(1, 1_000_000)))
 
 
-def timecode(start_frame: int, fps: Fraction) -> str:
-    """Return ``hh:mm:ss:ff`` of a frame counted from midnight; non-drop, so 29.97 counts 30 frames a second."""
-    nominal = math.ceil(fps)
+def timecode(start_frame: int, fps: Fraction | float) -> str:
+    """Return ``hh:mm:ss:ff`` of a frame counted from midnight; non-drop, so 29.97 counts 30 frames a second.
+
+    A rate that was measured, 60.02 say, counts the nearest whole number of frames too.
+    """
+    nominal = max(1, round(fps))
     seconds, frame = divmod(start_frame % (24 * 3600 * nominal), nominal)
     return f"{seconds // 3600:02d}:{seconds // 60 % 60:02d}:{seconds % 60:02d}:{frame:02d}"
 

@@ -113,6 +113,8 @@ def test_the_start_frame_is_kept_as_timecode(tmp_path, suffix):
 def test_timecode_counts_nominal_frames_and_wraps_at_midnight():
     assert timecode(30 * 60, Fraction(30000, 1001)) == "00:01:00:00"
     assert timecode(25 * 86400 + 3, Fraction(25)) == "00:00:00:03"
+    for measured_hz in (59.94, 59.98, 60.000001, 60.03):  # a clock that is a little off is still one of 60
+        assert timecode(60 * 36_000 + 7, measured_hz) == "10:00:00:07"
 
 
 @pytest.mark.parametrize("rate_hz", [5512, 44_100, 96_000, 192_000])
