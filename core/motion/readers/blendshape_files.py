@@ -35,8 +35,11 @@ class NamesUnknown(UserFacingError):
 
 
 def take_name(path: Path) -> str:
-    """Return what the sound and the transcript of a take of weights are called: facegood's files put a word before."""
-    return path.stem.removeprefix("bs_value_")
+    """Return what the sound and the transcript of a take of weights are called.
+
+    Facegood's files put a word before, and ours have two suffixes: ``take.livelink.csv``, ``take.curves.json``.
+    """
+    return path.stem.removeprefix("bs_value_").removesuffix(".livelink").removesuffix(".curves")
 
 
 def is_blendshape_file(path: str | Path) -> bool:

@@ -46,6 +46,13 @@ def takes(tmp_path, known_model, babble):
     return tmp_path
 
 
+def test_our_own_names_of_curves_go_with_the_transcript_of_the_take(takes):
+    (takes / "take0.csv").rename(takes / "take0.livelink.csv")
+    (takes / "take1.json").rename(takes / "take1.curves.json")
+    examples, notes = read_artist_examples([takes])
+    assert len(examples) == 4 and not notes
+
+
 def test_a_folder_is_read_in_order_of_the_names(takes, known_model, babble):
     examples, notes = read_artist_examples([takes])
     assert not notes
