@@ -45,6 +45,8 @@ def read_curves_json(path: str | Path) -> ControlTrack:
     names, rows, rate_hz = data.get("controls"), data.get("frames"), data.get("rate_hz")
     if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
         raise UserFacingError(f"'{path}' does not name its controls.")
+    if len(set(names)) != len(names) or not all(names):
+        raise UserFacingError(f"'{path}': two controls have the same name, or one has none.", "Name each differently.")
     if not isinstance(rate_hz, int | float) or not 0 < rate_hz < math.inf:
         raise UserFacingError(f"'{path}' does not say its frames a second.")
     if not isinstance(rows, list) or not rows:

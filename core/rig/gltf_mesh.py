@@ -105,13 +105,14 @@ class _Scene:
         self._label_of_triangle: list[np.ndarray] = []
         self._moves: list[tuple[str, int, np.ndarray]] = []
         self._count = 0
+        self._walked: set[int] = set()
 
     def collected(self) -> tuple[RawMesh, dict[str, np.ndarray]]:
         document = self._document
         scenes = document.get("scenes")
         roots = scenes[document.get("scene", 0)]["nodes"] if scenes else range(len(document.get("nodes", [])))
         for node in roots:
-            self._walk(document["nodes"][node], np.eye(4))
+            self._walk(node, np.eye(4))
         if not self._positions:
             raise ValueError("no triangles")
         uv = np.concatenate(self._uvs).astype(np.float32)
@@ -124,14 +125,19 @@ class _Scene:
             shapes.setdefault(name, np.zeros((self._count, 3)))[first : first + len(moved)] = moved
         return mesh, shapes
 
-    def _walk(self, node: dict, above: np.ndarray) -> None:
+    def _walk(self, number: int, above: np.ndarray) -> None:
+        # nodes form trees (glTF 2.0, 3.5.2); one with two parents, level upon level, would be walked for ever
+        if number in self._walked:
+            raise ValueError("a node has two parents")
+        self._walked.add(number)
+        node = self._document["nodes"][number]
         world = above @ _local(node)
         if "mesh" in node:
             mesh = self._document["meshes"][node["mesh"]]
             # a skinned mesh stands where its joints put it, not where its node is (glTF 2.0, 3.7.3.3)
             self._take(mesh, node.get("name", ""), np.eye(4) if "skin" in node else world)
         for child in node.get("children", []):
-            self._walk(self._document["nodes"][child], world)
+            self._walk(child, world)
 
     def _take(self, mesh: dict, node_name: str, world: np.ndarray) -> None:
         names = mesh.get("extras", {}).get("targetNames", [])

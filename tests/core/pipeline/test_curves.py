@@ -74,15 +74,15 @@ GOOD = {"format": "efase-curves", "version": 1, "rate_hz": 30, "controls": ["a"]
 @pytest.mark.parametrize(
     "bad",
     [{"format": "x"}, {"version": 2}, {"rate_hz": 0}, {"rate_hz": "fast"}, {"controls": []}, {"controls": [1]},
-     {"controls": ["a", "a"], "frames": [[0, 0]]}, {"frames": []}, {"frames": [[0, 1]]}, {"frames": [["x"]]},
-     {"frames": [[float("nan")]]}, {"frames": 3}],
+     {"controls": ["a", "a"], "frames": [[0, 0]]}, {"controls": [""]}, {"frames": []}, {"frames": [[0, 1]]},
+     {"frames": [["x"]]}, {"frames": [[float("nan")]]}, {"frames": 3}],
 )  # fmt: skip
 def test_damaged_json_is_refused_in_a_sentence(tmp_path, bad):
     path = tmp_path / "a.json"
     path.write_text(json.dumps(GOOD))
     assert read_curves_json(path).values.tolist() == [[0.5]]
     path.write_text(json.dumps(GOOD | bad))
-    with pytest.raises(UserFacingError):
+    with pytest.raises(UserFacingError, match=path.name):
         read_curves_json(path)
 
 

@@ -115,6 +115,8 @@ def test_vertices_and_shapes_are_those_that_trimesh_reads(tmp_path):
         lambda d: d["accessors"][0].update(count=-1),
         lambda d: d["bufferViews"][0].update(byteOffset=90),
         lambda d: d["nodes"][1].update(children=[0]),
+        # 2 ** 40 ways lead down
+        lambda d: d.update(nodes=[*({"children": [n + 1, n + 1]} for n in range(40)), {"mesh": 0}]),
         lambda d: d["scenes"][0].update(nodes=[7]),
         lambda d: d["meshes"][0].update(primitives=[]),
         lambda d: d["buffers"][0].update(uri="../../etc/passwd"),
