@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 from dataclasses import dataclass
 from pathlib import Path
@@ -87,23 +88,19 @@ def component_animemes(database: MotionDatabase, form: AnimemeForm = BEST, progr
     """
     path = _cache_path(database, form)
     names, mapping = component_controls(database)
-    try:
+    with contextlib.suppress(UserFacingError):  # missing or damaged: it is learnt anew
         model = load_animemes(path)
         if model.names == names:
             return model
-    except UserFacingError:
-        pass  # missing or damaged: it is learnt anew
     examples = database_examples(database, names, mapping, progress=progress.part(0.0, 0.1))
     spread = float(np.sqrt(database.pca.variance.sum()))
     model = train_animemes(
         examples, form, database.rest_coefficients, importance=np.full(len(names), 1.0 / max(spread, 1e-9)),
         progress=progress.part(0.1, 1.0),
     ).model  # fmt: skip
-    try:
+    with contextlib.suppress(OSError, UserFacingError):  # without a cache it is learnt again next time
         path.parent.mkdir(parents=True, exist_ok=True)
         model.save(path)
-    except (OSError, UserFacingError):
-        return model
     return model
 
 
