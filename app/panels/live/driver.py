@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import QObject, Qt, Signal
+from PySide6.QtCore import QObject, Qt, QTimer, Signal
 
 from app.jobs import JobRunner
 from app.live.command import open_outgoing
@@ -66,6 +66,7 @@ class LiveDriver(QObject):
         self._voice.heard.connect(self._on_heard, Qt.ConnectionType.QueuedConnection)
         self._voice.ended.connect(self._on_ended, Qt.ConnectionType.QueuedConnection)
         jobs.failed.connect(self.failed)
+        jobs.ended.connect(self._on_job_ended)
 
     # Opening
 
@@ -104,6 +105,16 @@ class LiveDriver(QObject):
         self.session.send_to(self._outgoing)
         self.learned.emit(face)
         self._begin()
+
+    def _on_job_ended(self, kind: str) -> None:
+        # its answer, if there is one, is taken after this
+        if kind in ("face", "stream"):
+            QTimer.singleShot(0, self, self._on_job_over)
+
+    def _on_job_over(self) -> None:
+        if self.session is None and not self.jobs.is_running("face"):  # given up, or nothing could be learned
+            self._waiting = None
+        self.changed.emit()
 
     def _begin(self) -> None:
         self.source, self._waiting = self._waiting, None

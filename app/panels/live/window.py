@@ -312,6 +312,9 @@ class LiveWindow(QWidget):
         if not records:
             seconds = 0.0 if driver.take is None else driver.take.audio.duration_s
             self.recorded.setText(_clock(seconds) if seconds else "")
+        self.send_button.blockSignals(True)
+        self.send_button.setChecked(driver.is_sending)
+        self.send_button.blockSignals(False)
         has_database = self.authoring.document.database is not None
         if self.pane.is_empty:
             self.pane.show_empty(texts.NOT_LISTENING if has_database else texts.NO_DATABASE)

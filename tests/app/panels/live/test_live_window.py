@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 import soundfile
@@ -276,6 +278,39 @@ def test_emotions_that_were_not_learned_are_not_offered(live, stand_in, sound_pa
     assert live.expression.emotion == "neutral" and live.expression.button("anger").isEnabled()
     QTest.keyClick(live, Qt.Key.Key_2)
     assert live.expression.emotion == "neutral"
+
+
+def test_learning_can_be_given_up_and_what_cannot_be_learned_is_told(live, sound_path, monkeypatch, qtbot):
+    def slowly(_database, progress):
+        while True:
+            progress.step(0.5)
+            time.sleep(0.01)
+
+    def not_at_all(_database, _progress):
+        raise UserFacingError("Nothing can be learned.")
+
+    live.choose_file(sound_path)
+    monkeypatch.setattr(driver, "speaking_face", slowly)
+    click(live.listen_button)
+    qtbot.waitUntil(lambda: live.status.job == texts.LEARNING, timeout=WAIT_MS)
+    assert live.listen_button.text() == texts.STOP and not live.record_button.isEnabled()
+    click(live.status.cancel_button)
+    qtbot.waitUntil(lambda: live.listen_button.text() == texts.LISTEN, timeout=WAIT_MS)
+    monkeypatch.setattr(driver, "speaking_face", not_at_all)
+    click(live.listen_button)
+    qtbot.waitUntil(lambda: live.message.text == "Nothing can be learned.", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: live.listen_button.text() == texts.LISTEN, timeout=WAIT_MS)
+
+
+def test_a_host_that_is_not_known_leaves_the_stream_off(live, monkeypatch, qtbot):
+    def no_host(_address, _database):
+        raise UserFacingError("The host is not known.")
+
+    monkeypatch.setattr(driver, "open_outgoing", no_host)
+    live.address.setText("udp://nobody:1")
+    click(live.send_button)
+    qtbot.waitUntil(lambda: live.message.text == "The host is not known.", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not live.send_button.isChecked(), timeout=WAIT_MS)
 
 
 def test_a_file_that_is_no_sound_is_one_sentence(live, tmp_path):
