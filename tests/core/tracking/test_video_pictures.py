@@ -20,7 +20,9 @@ def _ramps(n=12, width=96, height=80):
 
 
 def _hum(seconds):
-    return Audio((0.3 * np.sin(2 * np.pi * 220 * np.arange(round(16_000 * seconds)) / 16_000)).astype(np.float32), 16_000)
+    return Audio(
+        (0.3 * np.sin(2 * np.pi * 220 * np.arange(round(16_000 * seconds)) / 16_000)).astype(np.float32), 16_000
+    )
 
 
 @pytest.mark.parametrize("suffix", [".avi", ".mp4"])
