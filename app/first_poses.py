@@ -6,12 +6,13 @@ from pathlib import Path
 
 from app.controlled_face import one_rig
 from app.demo import open_named
+from core.animeme.key_shapes import captured_keys
 from core.document.parts import FaceChoice
 from core.errors import UserFacingError
 from core.face.default_face import default_face
 from core.media.swap_in import check_target
 from core.progress import SILENT, Progress
-from core.rig.key_poses import captured_keys, first_poses
+from core.rig.key_poses import first_poses
 
 
 def run(output: Path, database: Path | None, face: str, n_keys: int, progress: Progress = SILENT) -> dict[str, object]:
@@ -21,8 +22,7 @@ def run(output: Path, database: Path | None, face: str, n_keys: int, progress: P
     check_target(output)
     rig = one_rig(FaceChoice(face), None, output)
     opened = open_named(database, progress.part(0.0, 0.3))
-    progress.step(0.3, "choosing key lip shapes")
-    lips, lips_mm = captured_keys(opened, n_keys)
+    lips, lips_mm = captured_keys(opened, n_keys, progress=progress.part(0.3, 0.6))
     poses = first_poses(rig, default_face(progress.part(0.6, 0.9)), opened.markers, lips, lips_mm)
     poses.save(output)
     at_rest = [key for key, row in zip(poses.keys, poses.values) if not row.any()]

@@ -7,9 +7,10 @@ import warnings
 import numpy as np
 
 from core.errors import UserFacingError
+from core.motion.database import MotionDatabase
 from core.progress import SILENT, Progress
 
-_MOST_FRAMES = 600
+_MOST_CAPTURED, _MOST_FRAMES = 6000, 600
 _TRIALS = 12
 # messages among lips that move along a line oscillate under the first, and every frame becomes an exemplar
 _DAMPINGS = (0.8, 0.95)
@@ -47,6 +48,25 @@ def key_lip_shapes(
     if not len(best):
         raise UserFacingError(f"The captured lips do not fall into {n_shapes} key shapes.", "Ask for another number.")
     return chosen[np.sort(best)]
+
+
+def captured_keys(
+    database: MotionDatabase, n_shapes: int = 7, seed: int = 2008, progress: Progress = SILENT
+) -> tuple[np.ndarray, np.ndarray]:
+    """Choose key lip shapes among the captured frames; see `key_lip_shapes`.
+
+    returns : rows of the lip markers, int, shape (K,), and the shapes, float64, shape (N, K, 3), mm from rest
+    Raises `UserFacingError` where the database does not say which markers are the lips.
+    """
+    lips = database.markers.group("lips")
+    if len(lips) == 0:
+        raise UserFacingError(
+            f"The database '{database.name}' does not say which markers are the lips.",
+            "Name them in the group lips of markers.csv and build it anew.",
+        )
+    step = max(1, len(database.frames) // _MOST_CAPTURED)
+    moved = database.pca.positions(database.frames[::step].astype(float))[:, lips] - database.markers.rest[lips]
+    return lips, moved[key_lip_shapes(moved, n_shapes, seed, progress)]
 
 
 def _nearest_in_number(similar: np.ndarray, n_shapes: int, damping: float, seed: int, progress: Progress) -> np.ndarray:

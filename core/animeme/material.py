@@ -9,7 +9,7 @@ import numpy as np
 from core.animeme.controls import ControlTrack
 from core.animeme.cross_mapping import RIDGE_MM2, solve_controls, solve_shares, units_at_markers
 from core.animeme.examples import Example
-from core.animeme.key_shapes import key_lip_shapes
+from core.animeme.key_shapes import captured_keys
 from core.errors import UserFacingError
 from core.evaluation.measures import lip_gap_mm, lip_width_mm
 from core.face.face import Face
@@ -71,16 +71,8 @@ def key_shape_controls(
 
     Raises `UserFacingError` when the markers are not told which are the lips.
     """
-    lips = database.markers.group("lips")
-    if len(lips) == 0:
-        raise UserFacingError(
-            f"The database '{database.name}' does not say which markers are the lips.",
-            "Name them in the group lips of markers.csv and build it anew.",
-        )
+    lips, shapes = captured_keys(database, n_shapes, seed)
     rest = database.markers.rest[lips]
-    step = max(1, len(database.frames) // 6000)
-    moved = database.pca.positions(database.frames[::step].astype(float))[:, lips] - rest
-    shapes = moved[key_lip_shapes(moved, n_shapes, seed)]
     return (
         tuple(f"lips{k + 1}" for k in range(len(shapes))),
         lambda positions: solve_shares(positions[:, lips] - rest, shapes),

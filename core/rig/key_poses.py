@@ -11,13 +11,10 @@ import numpy as np
 
 from core.animeme.controls import ControlTrack
 from core.animeme.cross_mapping import bounded_least_squares, solve_controls, solve_shares, units_at_markers
-from core.animeme.key_shapes import key_lip_shapes
 from core.errors import UserFacingError
 from core.face.face import Face
 from core.media.swap_in import swapped_in
-from core.motion.database import MotionDatabase
 from core.motion.marker_set import MarkerSet
-from core.progress import SILENT, Progress
 from core.rig.control_names import control_mixing
 from core.rig.rig import Rig
 from core.speech.text_file import read_text
@@ -25,7 +22,6 @@ from core.synthesis.marker_motion import MarkerMotion
 
 FORMAT = "efase-key-poses"
 VERSION = 1
-_MOST_FRAMES = 6000
 
 
 @dataclass(frozen=True)
@@ -74,21 +70,14 @@ class KeyPoses:
             beside.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8", newline="\n")
 
 
-def captured_keys(
-    database: MotionDatabase, n_keys: int = 7, seed: int = 2008, progress: Progress = SILENT
-) -> tuple[np.ndarray, np.ndarray]:
-    """Choose key lip shapes among the captured frames; see `core.animeme.key_shapes.key_lip_shapes`.
-
-    returns : rows of the lip markers, int, shape (K,), and the shapes, float64, shape (N, K, 3), mm from rest
-    Raises `UserFacingError` where the database does not say which markers are the lips.
-    """
-    lips = database.markers.group("lips")
-    if len(lips) == 0:
-        raise UserFacingError(f"The database '{database.name}' does not say which markers are the lips.",
-                              "Name them in the group lips of markers.csv and build it anew.")  # fmt: skip
-    step = max(1, len(database.frames) // _MOST_FRAMES)
-    moved = database.pca.positions(database.frames[::step].astype(float))[:, lips] - database.markers.rest[lips]
-    return lips, moved[key_lip_shapes(moved, n_keys, seed, progress)]
+def resting_poses(
+    rig: str, controls: tuple[str, ...], markers: MarkerSet, lips: np.ndarray, lips_mm: np.ndarray
+) -> KeyPoses:
+    """Name key lip shapes and leave all their controls at rest; see `default_poses`."""
+    keys = tuple(f"lips{n + 1}" for n in range(len(lips_mm)))
+    names = tuple(markers.names[k] for k in lips)
+    at_rest = np.zeros((len(keys), len(controls)))
+    return KeyPoses(rig, keys, names, np.asarray(lips_mm, float), controls, at_rest)
 
 
 def default_poses(face: Face, markers: MarkerSet, lips: np.ndarray, lips_mm: np.ndarray) -> KeyPoses:
@@ -98,8 +87,7 @@ def default_poses(face: Face, markers: MarkerSet, lips: np.ndarray, lips_mm: np.
     """
     names, units = units_at_markers(face, markers)
     values = solve_controls(lips_mm, units[:, lips])
-    keys = tuple(f"lips{n + 1}" for n in range(len(lips_mm)))
-    return KeyPoses(face.name, keys, tuple(markers.names[k] for k in lips), np.asarray(lips_mm, float), names, values)
+    return replace(resting_poses(face.name, names, markers, lips, lips_mm), values=values)
 
 
 def first_poses(rig: Rig, face: Face, markers: MarkerSet, lips: np.ndarray, lips_mm: np.ndarray) -> KeyPoses:

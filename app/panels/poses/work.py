@@ -10,13 +10,14 @@ import numpy as np
 from app.face_light import face_light
 from app.panels.poses.posing import PosedFace, Posing, lip_rows
 from app.texts import poses as texts
+from core.animeme.key_shapes import captured_keys
 from core.errors import UserFacingError
 from core.face.characters import CHARACTERS
 from core.face.default_face import default_face
 from core.motion.database import MotionDatabase
 from core.motion.marker_set import MarkerSet
 from core.progress import Progress
-from core.rig.key_poses import KeyPoses, captured_keys, first_poses, load_key_poses
+from core.rig.key_poses import KeyPoses, first_poses, load_key_poses, resting_poses
 from core.rig.rig_files import load_rig
 from gpu.gl.complexion import grain
 from gpu.gl.face_arrays import FaceArrays
@@ -62,10 +63,7 @@ def guess(request: GuessRequest, progress: Progress) -> Guess:
     try:
         return Guess(first_poses(rig, default_face(progress), markers, lips, lips_mm))
     except UserFacingError as error:
-        keys = tuple(f"lips{n + 1}" for n in range(len(lips_mm)))
-        names = tuple(markers.names[k] for k in lips)
-        at_rest = np.zeros((len(keys), len(rig.names)))
-        poses = KeyPoses(rig.face.name, keys, names, np.asarray(lips_mm, float), rig.names, at_rest)
+        poses = resting_poses(rig.face.name, rig.names, markers, lips, lips_mm)
         return Guess(poses, texts.NOT_POSED.format(why=error.message))
 
 
