@@ -10,6 +10,7 @@ from fractions import Fraction
 import numpy as np
 
 from core.errors import UserFacingError
+from core.media.video import timecode
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,11 @@ class ControlTrack:
     def times_s(self) -> np.ndarray:
         """When each frame stands, float64, shape (n_frames,), from 0."""
         return np.arange(len(self.values)) / self.rate_hz
+
+    @property
+    def start_timecode(self) -> str:
+        """``hh:mm:ss:ff`` of the first frame."""
+        return timecode(self.start_frame, self.rate_hz)
 
     def column(self, name: str) -> np.ndarray:
         """Return one control, float32, shape (n_frames,); raises `UserFacingError` for one that there is not."""

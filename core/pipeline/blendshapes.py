@@ -6,7 +6,6 @@ import numpy as np
 
 from core.animeme.controls import ControlTrack
 from core.errors import UserFacingError
-from core.media.video import timecode
 from core.motion.blendshape_track import ARKIT_UNITS, BlendshapeTrack
 from core.rig.control_names import control_mixing
 
@@ -46,8 +45,7 @@ def arkit_weights(track: ControlTrack) -> tuple[BlendshapeTrack, tuple[str, ...]
     if arkit.beyond():
         warnings.append(f"Weights of {', '.join(arkit.beyond()[:5])} were limited to 0 and 1.")
     weights = arkit.clipped().values
-    start = timecode(track.start_frame, track.rate_hz)
-    return BlendshapeTrack(weights, ARKIT_UNITS, track.rate_hz, start), tuple(warnings)
+    return BlendshapeTrack(weights, ARKIT_UNITS, track.rate_hz, track.start_timecode), tuple(warnings)
 
 
 def _frame_of(code: str, rate_hz: float) -> int:

@@ -9,11 +9,11 @@ from core.motion.live_link_face import write_live_link_face
 from core.pipeline.blendshapes import arkit_weights
 from core.pipeline.curves import write_curves_csv, write_curves_json
 from core.pipeline.gltf import write_glb
+from core.pipeline.usd import SUFFIXES as _USD
 from core.pipeline.usd import check_usd, write_usd
 from core.rig.rig import Rig, fitted
 
 LIVE_LINK = ".livelink.csv"
-_USD = (".usd", ".usda", ".usdc")
 _POINTS = tuple(f".points{suffix}" for suffix in _USD)
 # the longer before the shorter
 SUFFIXES = (LIVE_LINK, ".curves.csv", ".curves.json", *_POINTS, ".json", ".glb", *_USD)

@@ -11,7 +11,6 @@ import numpy as np
 from core.animeme.controls import ControlTrack
 from core.errors import UserFacingError
 from core.media.swap_in import swapped_in
-from core.media.video import timecode
 from core.speech.text_file import read_text
 
 FORMAT = "efase-curves"
@@ -25,7 +24,7 @@ def write_curves_json(path: str | Path, track: ControlTrack) -> None:
     Values are written as they are, to six digits. Raises `UserFacingError` when the file cannot be written.
     """
     head = {"format": FORMAT, "version": VERSION, "rate_hz": track.rate_hz, "start_frame": track.start_frame,
-            "start_timecode": timecode(track.start_frame, track.rate_hz), "controls": list(track.names)}  # fmt: skip
+            "start_timecode": track.start_timecode, "controls": list(track.names)}  # fmt: skip
     rows = ",\n".join(json.dumps([round(v, _DIGITS) for v in row]) for row in track.values.tolist())
     with swapped_in(path) as beside:
         beside.write_text(f'{json.dumps(head)[:-1]}, "frames": [\n{rows}\n]}}\n', encoding="utf-8", newline="\n")

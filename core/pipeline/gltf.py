@@ -16,7 +16,6 @@ import numpy as np
 from core.animeme.controls import ControlTrack
 from core.face.face import PARTS
 from core.media.swap_in import swapped_in
-from core.media.video import timecode
 from core.pipeline.vertex_colours import vertex_colours
 from core.rig.rig import Rig
 
@@ -73,18 +72,13 @@ def write_glb(rig: Rig, track: ControlTrack, path: str | Path) -> None:
                     "extras": {"targetNames": list(rig.names)}}],
         "materials": materials,
         "animations": [{"name": "speech", "samplers": [sampler], "channels": [channel],
-                        "extras": {"rate_hz": track.rate_hz, "start": start_timecode(track)}}],
+                        "extras": {"rate_hz": track.rate_hz, "start": track.start_timecode}}],
         **packed.tables(),
     }  # fmt: skip
     if not face.credit:
         del document["asset"]["copyright"]
     with swapped_in(path) as beside:
         beside.write_bytes(_container(document, bytes(packed.data)))
-
-
-def start_timecode(track: ControlTrack) -> str:
-    """Return ``hh:mm:ss:ff`` of the first frame."""
-    return timecode(track.start_frame, track.rate_hz)
 
 
 def vertex_normals(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:

@@ -14,10 +14,10 @@ from core.animeme.controls import ControlTrack
 from core.errors import UserFacingError
 from core.face.face import PARTS
 from core.media.swap_in import swapped_in
+from core.pipeline.gltf import M_PER_MM
 from core.pipeline.vertex_colours import vertex_colours
 from core.rig.rig import Rig, poses
 
-M_PER_MM = 0.001
 SUFFIXES = (".usd", ".usda", ".usdc")
 
 
