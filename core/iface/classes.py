@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -14,6 +15,9 @@ from core.speech.phoneme import PAU, PHONEME_INDEX, PHONEMES
 N_CLASSES = 44  # the paper's; our set of phonemes has 45, of which no corpus says all
 # A frame's features are of windows of 25 ms that end in the 30th of a second before it; their middle lies so far back.
 _HEARD_BEFORE_S = 0.5 / RATE_HZ + 0.0125
+
+_FLOOR = 1e-3  # of a variance, as a share of that of all frames, so that few frames make no needle
+_ROUNDS = 50
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,30 +81,43 @@ def fit_classes(features: np.ndarray, phones: np.ndarray, n_components: int, few
     fewest : a class that scores highest in fewer frames is left out too, the smallest first, and its frames go to those
         that score next; silence is a class like any other
     """
-    from sklearn.mixture import GaussianMixture
-
     counts = np.bincount(phones, minlength=len(PHONEMES))
-    chosen = [p for p in np.argsort(-counts, kind="stable")[:N_CLASSES] if counts[p] >= fewest] or [counts.argmax()]
+    said = {p: features[phones == p] for p in np.argsort(-counts, kind="stable")[:N_CLASSES] if counts[p] >= fewest}
+    if not said:
+        said = {int(counts.argmax()): features}
     tables = (
-        np.zeros((len(chosen), n_components, N_CEPSTRA)),
-        np.zeros((len(chosen), n_components, N_CEPSTRA, N_CEPSTRA)),
-        np.full((len(chosen), n_components), -np.inf),
+        np.zeros((len(said), n_components, N_CEPSTRA)),
+        np.zeros((len(said), n_components, N_CEPSTRA, N_CEPSTRA)),
+        np.full((len(said), n_components), -np.inf),
     )
-    spread = features.var(axis=0).mean()
-    for c, phone in enumerate(chosen):
-        heard = features[phones == phone].astype(float)
+    floor = max(1e-6, _FLOOR * float(features.var(axis=0).mean()))
+    for c, heard in enumerate(said.values()):
         j = int(np.clip(len(heard) // fewest, 1, n_components))
-        mixture = GaussianMixture(j, reg_covar=1e-3 * spread, random_state=seed, max_iter=50, tol=1e-2).fit(heard)
-        factors = mixture.precisions_cholesky_
-        peak = np.log(np.diagonal(factors, axis1=1, axis2=2)).sum(axis=1) - 0.5 * N_CEPSTRA * np.log(2 * np.pi)
-        for table, part in zip(tables, (mixture.means_, factors, np.log(mixture.weights_) + peak)):
+        for table, part in zip(tables, _mixture(heard, j, floor, seed)):
             table[c, :j] = part
-    classes = SpeechClasses(tuple(PHONEMES[p] for p in chosen), *tables)
+    classes = SpeechClasses(tuple(PHONEMES[p] for p in said), *tables)
     scores = classes.scores(features)
-    kept = np.arange(len(chosen))
+    kept = np.arange(len(said))
     while len(kept) > 1:
         won = np.bincount(scores[:, kept].argmax(axis=1), minlength=len(kept))
         if won.min() >= fewest:
             break
         kept = np.delete(kept, won.argmin())
     return classes.only(kept)
+
+
+def _mixture(
+    heard: np.ndarray, n_components: int, floor: float, seed: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return means, factors and log scales (see `SpeechClasses`) of a mixture; ``floor`` is added to variances."""
+    from sklearn.exceptions import ConvergenceWarning
+    from sklearn.mixture import GaussianMixture
+    from threadpoolctl import threadpool_limits
+
+    mixture = GaussianMixture(n_components, reg_covar=floor, random_state=seed, max_iter=_ROUNDS, tol=1e-2)
+    with threadpool_limits(1), warnings.catch_warnings():
+        warnings.simplefilter("ignore", ConvergenceWarning)  # a mixture that still moves a little serves as well
+        mixture.fit(heard.astype(float))
+    factors = mixture.precisions_cholesky_
+    peak = np.log(np.diagonal(factors, axis1=1, axis2=2)).sum(axis=1) - 0.5 * N_CEPSTRA * np.log(2 * np.pi)
+    return mixture.means_, factors, np.log(mixture.weights_) + peak

@@ -89,10 +89,13 @@ def _perceptron(
 
     mean, scale = inputs.mean(axis=0, dtype=float), inputs.std(axis=0, dtype=float)
     scale = np.where(scale > 1e-6, scale, 1.0)
-    rest, size = wanted.mean(axis=0), max(float(wanted.std(axis=0).max()), 1e-6)
+    rest, size = wanted.mean(axis=0), max(float(wanted.std(axis=0).max(initial=0.0)), 1e-6)
+    if 0 in (inputs.shape[1], wanted.shape[1]):  # a face that holds still has no units
+        return Perceptron.of_layers([np.zeros((inputs.shape[1], wanted.shape[1]))], [rest], "tanh")
     net = MLPRegressor(hidden_layer_sizes=(n_hidden,), activation="tanh", solver="lbfgs", alpha=decay,
                        max_iter=n_steps, random_state=seed)  # fmt: skip
     with threadpool_limits(1), warnings.catch_warnings():
         warnings.simplefilter("ignore", ConvergenceWarning)  # stopping early is part of it
-        net.fit((inputs - mean) / scale, (wanted - rest) / size)
+        towards = (wanted - rest) / size
+        net.fit((inputs - mean) / scale, towards if towards.shape[1] > 1 else towards[:, 0])
     return Perceptron.of_sklearn(net).taking(mean, scale).giving(rest, size * np.eye(wanted.shape[1]))

@@ -8,9 +8,13 @@ import numpy as np
 import pytest
 import soundfile
 
+from core.iface.heard_takes import database_takes
+from core.iface.modern_training import train_modern_face
+from core.iface.paper_training import train_paper_face
 from core.motion.build import BuildSettings, build_database
 from core.motion.corpus import Corpus
 from tests.core.evaluation.conftest import NAMES, RATE_HZ, REST, recording
+from tests.core.iface.quick_training import QUICK_MODERN, QUICK_PAPER
 
 _SOUND_HZ = 16_000
 
@@ -36,3 +40,13 @@ def loud_corpus(tmp_path_factory):
 @pytest.fixture(scope="session")
 def loud_database(loud_corpus, tmp_path_factory):
     return build_database(loud_corpus, tmp_path_factory.mktemp("loud") / "loud.h5", BuildSettings(n_dims=6))
+
+
+@pytest.fixture(scope="session")
+def quick_faces(loud_database):
+    """A small trained face of each variant, by name."""
+    takes = database_takes(loud_database, n_noises=1)
+    return {
+        "modern": train_modern_face(takes, loud_database.markers, settings=QUICK_MODERN),
+        "paper": train_paper_face(takes, loud_database.markers.rest, settings=QUICK_PAPER),
+    }
