@@ -78,16 +78,17 @@ def _row(
     character, head_gain, trouble = CONDITIONS[name]
     face = character_face(character)
     errors: dict[str, list[np.ndarray]] = {method: [] for method in METHODS}
-    n_frames, seconds, n_lost = 0, 0.0, 0
+    n_frames, seconds, cpu_s, n_lost = 0, 0.0, 0.0, 0
     for s, spoken in enumerate(sentences):
         progress.step(s / len(sentences), f"{name}: {spoken.sentence}")
         scene = Scene.of(face, spoken, head_gain)
         seen = trouble.of(scene.pictures(), seed=s)
         write_video(path, seen, len(scene.vertices), Fraction(int(RATE_HZ)))
         request = request_for(scene, path, model)
-        began = time.perf_counter()
+        began, cpu_began_s = time.perf_counter(), time.process_time()
         track = track_video(request)
         seconds += time.perf_counter() - began
+        cpu_s += time.process_time() - cpu_began_s
         n_frames, n_lost = n_frames + len(track.points), n_lost + int(track.lost.sum())
         truth = scene.tracks(track.points[0])
         looks = [look_of(picture.grey) for picture in pictures(path)]
@@ -98,6 +99,7 @@ def _row(
     best_free = min(pooled[method].mean() for method in METHODS[:2])
     return {
         "condition": name, "frames": n_frames, "lost": n_lost, "frames_per_s": round(n_frames / seconds, 1),
+        "cpu_ms_per_frame": round(1000 * cpu_s / n_frames, 1),
         "mean_px": {method: round(float(error.mean()), 3) for method, error in pooled.items()},
         "p95_px": {method: round(float(np.quantile(error, 0.95)), 2) for method, error in pooled.items()},
         "less_than_alone": round(1.0 - float(pooled["constrained"].mean() / best_free), 3),
@@ -156,10 +158,11 @@ def _start(request: TrackingRequest, looks: Sequence[np.ndarray]) -> np.ndarray:
 
 def as_table(answer: dict[str, object]) -> str:
     """Lay the rows out as a Markdown table."""
-    lines = [f"| condition | frames | {' | '.join(METHODS)} | less than alone | 95 % | frames/s |",
-             "|---|" + "---|" * (len(METHODS) + 4)]  # fmt: skip
+    lines = [f"| condition | frames | {' | '.join(METHODS)} | less than alone | 95 % | frames/s | CPU ms |",
+             "|---|" + "---|" * (len(METHODS) + 5)]  # fmt: skip
     for row in answer["rows"]:
-        means = " | ".join(f"{row['mean_px'][method]:.2f}" for method in METHODS)
-        lines.append(f"| {row['condition']} | {row['frames']} | {means} | {row['less_than_alone']:.0%} | "
-                     f"{row['p95_px']['constrained']:.1f} | {row['frames_per_s']:.0f} |")  # fmt: skip
+        cells = [row["condition"], str(row["frames"]), *(f"{row['mean_px'][method]:.2f}" for method in METHODS)]
+        cells += [f"{row['less_than_alone']:.0%}", f"{row['p95_px']['constrained']:.1f}"]
+        cells += [f"{row['frames_per_s']:.0f}", f"{row['cpu_ms_per_frame']:.0f}"]
+        lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines)

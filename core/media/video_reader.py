@@ -97,4 +97,6 @@ class VideoReader:
         frame = self._shown
         share = min(1.0, _LARGEST_PX / max(frame.width, frame.height))
         width, height = max(round(frame.width * share), 1), max(round(frame.height * share), 1)
-        return frame.reformat(width=width, height=height, format="rgb24").to_ndarray()
+        picture = frame.reformat(width=width, height=height, format="rgb24").to_ndarray()
+        # phones store films lying down, and say so
+        return np.ascontiguousarray(np.rot90(picture, round(frame.rotation / 90)))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -181,8 +180,3 @@ def _grey(frame: av.VideoFrame, shrink: float) -> np.ndarray:
         width, height = max(1, round(frame.width * shrink)), max(1, round(frame.height * shrink))
         grey = cv2.resize(grey, (width, height), interpolation=cv2.INTER_AREA)
     return np.ascontiguousarray(np.rot90(grey, round(frame.rotation / 90)))
-
-
-def exact_rate(rate_hz: float) -> Fraction:
-    """Return the rate as film makers mean it: 30000/1001 for 29.97."""
-    return Fraction(rate_hz).limit_denominator(1001)

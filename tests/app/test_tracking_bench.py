@@ -101,6 +101,9 @@ def test_unknown_conditions_and_parts_are_refused():
 
 def test_the_table_has_a_row_a_condition():
     methods = {"alone": 9.0, "alone, first picture": 8.0, "paper": 5.0, "constrained": 1.0}
-    row = {"condition": "noise", "frames": 10, "lost": 0, "frames_per_s": 40.0, "mean_px": methods, "p95_px": methods,
+    row = {"condition": "noise", "frames": 10, "lost": 0, "frames_per_s": 40.0,
+           "cpu_ms_per_frame": 17.2, "mean_px": methods, "p95_px": methods,
            "less_than_alone": 0.875}  # fmt: skip
-    assert as_table({"rows": [row]}).splitlines()[-1] == "| noise | 10 | 9.00 | 8.00 | 5.00 | 1.00 | 88% | 1.0 | 40 |"
+    assert (
+        as_table({"rows": [row]}).splitlines()[-1] == "| noise | 10 | 9.00 | 8.00 | 5.00 | 1.00 | 88% | 1.0 | 40 | 17 |"
+    )

@@ -8,13 +8,16 @@ from scipy.spatial.transform import Rotation
 
 from core.errors import UserFacingError
 from core.iface.affine_fit import AffineFit
+from core.iface.motion_unit import MotionUnits
 from core.media.audio import Audio, load_audio
 from core.motion.motion_files import read_motion
 from core.tracking.capture import capture_of, evenly_spaced, write_capture
+from core.tracking.face_model import FaceModel
 from core.tracking.start import Placement
 from core.tracking.track import Track, TrackingRequest, track_video
 from core.tracking.tracker import TrackerState
 from core.tracking.video_pictures import VideoFormat
+from tests.core.tracking.bent_sheet import bent_markers, clicks_on, sheet_markers
 
 
 def _seen_by_a_far_camera(model, turns, scales, parameters):
@@ -109,3 +112,21 @@ def test_nothing_is_written_of_a_face_that_was_never_seen(tracked, tmp_path):
     with pytest.raises(UserFacingError, match="no kind of capture"):
         write_capture(tracked, tmp_path / "take.mp3")
     assert not list(tmp_path.iterdir())
+
+
+def test_points_without_depth_stay_in_the_plane(sheet, film, tmp_path):
+    """A database of tracked points with x and y only."""
+    marked = sheet_markers()
+    flat = replace(marked, rest=marked.rest * [1.0, 1.0, 0.0])
+    moved = bent_markers(np.random.default_rng(3).normal(size=(200, 3)) * 3.0)[..., :2]
+    model = FaceModel.of(flat, MotionUnits.fit({"neutral": moved}, 0.9999))
+    assert not model.has_depth
+    path = film(sheet(n=8), tmp_path / "flat.avi")
+    track = track_video(TrackingRequest(path, model, clicks_on(model)))
+    truth = sheet(n=8).truth(model.seen * [1, -1])
+    assert np.linalg.norm(track.points - truth, axis=2).mean() < 0.7
+    positions = capture_of(track).positions
+    assert np.abs(positions[..., 2]).max() == 0.0
+    np.testing.assert_allclose(
+        positions[0, :, :2] - positions[0, 0, :2], flat.rest[:, :2] - flat.rest[0, :2], atol=1e-6
+    )
