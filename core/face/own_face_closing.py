@@ -2,13 +2,14 @@
 
 In each round every vertex that a scan may pull looks for the nearest place of it; the displacement d minimises
 
-    Σ_i a_i w_i |d_i - t_i|² + ℓ⁴ ∫ |Δd|² + Σ_k m |P_k d - q_k|² + Σ_pairs c |d_upper - d_lower|² + Σ_i a_i ε |d_i|²
+    Σ_i a_i w_i |d_i - t_i|² + ℓ⁴ ∫ |Δd|² + Σ_k m |P_k d - q_k|² + Σ_pairs c |d_upper - d_lower - r|²
+        + Σ_i a_i ε |d_i|²
 
-t_i is the way to the scan's tangent plane there, a_i the vertex's area, Δ the cotangent Laplacian of the resting face,
+t_i is the way to the scan's tangent plane there, a_i the vertex's area, Δ the cotangent Laplacian of the warped face,
 and ℓ, a length in mm that falls from round to round, how far a pull reaches (the stiffness of Amberg, Romdhani and
 Vetter, "Optimal Step Nonrigid ICP Algorithms for Surface Registration", 2007, as a length). w_i is Tukey's weight of
 the distance, and 0 for places that are too far, look another way, or lie on the rim of a hole. P_k are the clicked
-points.
+points, and r what brings lips that touch at rest as near together again.
 """
 
 from __future__ import annotations
@@ -66,6 +67,8 @@ def close(
         (np.ones(len(rows)), (rows, lower)), shape
     )
     fixed = PAIR_AREA_MM2 * contact.T @ contact + HOLD * diags(areas)
+    # lips that touch stay as near as they rest, whatever the points made of them
+    together = PAIR_AREA_MM2 * contact.T @ (contact @ (rest - warped))
     clicked, pulled = anchors.T @ anchors, anchors.T @ (targets - anchors @ warped)
     moved, weight = np.zeros_like(warped), np.zeros(len(warped))
     may = np.flatnonzero(protected.share > 0)
@@ -88,7 +91,7 @@ def close(
         system = csc_matrix(diags(pull) + reach**4 * bending + fixed + hold * clicked)
         # symmetric and positive definite: no pivots are looked for, which halves the work
         factors = splu(system, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-        moved = factors.solve(pull[:, None] * wanted + hold * pulled)
+        moved = factors.solve(pull[:, None] * wanted + hold * pulled + together)
     progress.step(1.0)
     return Closed(moved, weight)
 

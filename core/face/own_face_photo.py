@@ -22,7 +22,7 @@ FEWEST = 6
 FACES_CAMERA = (0.2, 0.5)  # cosine from which a place is seen, and from which it is seen well
 EDGE = (0.012, 0.04)  # of the head's width: from its outline on, where a photo may show what lies behind
 SOFT_PX = 5.0  # of a picture of 1024: seams between what is seen and what is filled are so wide
-LIGHT_SHARE, MOST_LIGHT = 0.7, 1.7  # how much of the photo's own light is taken out, and the largest factor
+LIGHT_SHARE, TINT_SHARE, MOST_LIGHT = 0.7, 0.6, 1.7  # how much of the photo's light and its tint is taken out
 SHADOW_PX = 640
 BEHIND_MM = 4.0
 WORST_SHARE = 0.06  # of the points' spread in the photo, that a camera may miss them by
@@ -155,7 +155,9 @@ def without_light(colours: np.ndarray, normals: np.ndarray, sure: np.ndarray) ->
         off = np.linalg.norm(brightness[known] - basis[known] @ fit, axis=1, keepdims=True)
         weights = np.sqrt(1.0 / (1.0 + (off / max(1.5 * float(np.median(off)), 1e-3)) ** 2))
     light = basis @ fit
-    factor = np.exp(LIGHT_SHARE * (np.median(light[known], axis=0) - light))
+    light = np.median(light[known], axis=0) - light
+    grey = light.mean(axis=1, keepdims=True)
+    factor = np.exp(LIGHT_SHARE * grey + TINT_SHARE * (light - grey))
     return np.clip(colours * np.clip(factor, 1.0 / MOST_LIGHT, MOST_LIGHT), 0.0, 255.0)
 
 

@@ -13,6 +13,7 @@ from app.texts import own_face as texts
 from core.face.characters import CHARACTERS
 
 _STEPS = 100
+_SHAPES_PX = 150
 _GENERIC, _FITTED, _DISTANCE = (option[0] for option in (texts.SHOW_GENERIC, texts.SHOW_FITTED, texts.SHOW_DISTANCE))
 
 
@@ -96,6 +97,7 @@ class FacePane(Pane):
         self.header.addWidget(self.characters)
         self.shapes = QComboBox(toolTip=texts.SHAPE_TIP)
         self.shapes.setProperty("role", "small")
+        self.shapes.setMinimumWidth(_SHAPES_PX)
         self.strength = QSlider(Qt.Orientation.Horizontal, minimum=0, maximum=_STEPS, toolTip=texts.SHAPE_TIP)
         self.strength.setFixedWidth(120)
         self.strength.setAccessibleName(texts.SHAPE)
