@@ -119,8 +119,8 @@ def test_shapes_go_where_ict_sculpted_them(there, ict_scan, ict_shapes):
         size[name] = lengths[0] / lengths[1]
     worst = sorted(alike, key=alike.get)[:5]
     print(f"{len(alike)} shapes: median cosine {np.median(list(alike.values())):.3f}, jaw {alike['jawOpen']:.3f} at "
-          f"{size['jawOpen']:.2f} of the length, blink {alike['eyeBlinkLeft']:.3f}, smile {alike['mouthSmileLeft']:.3f}, "
-          "least " + ", ".join(f"{n} {alike[n]:.2f}" for n in worst))  # fmt: skip
+          f"{size['jawOpen']:.2f} of the length, blink {alike['eyeBlinkLeft']:.3f}, "
+          f"smile {alike['mouthSmileLeft']:.3f}, least " + ", ".join(f"{n} {alike[n]:.2f}" for n in worst))  # fmt: skip
     assert len(alike) > 48
     assert np.median(list(alike.values())) > 0.7
     assert min(alike.values()) > 0.2
