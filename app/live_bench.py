@@ -29,6 +29,7 @@ _CLICK_EVERY_S, _CLICK_S, _QUIET_S = 2.511, 0.0005, 0.005
 _CLICK_LEVEL = 0.6  # the speech between stays below
 _SPEECH_LEVEL = 0.3
 _LEAD_S, _TAIL_S = 3.0, 1.0  # a sound server may take seconds until its first block
+_EARLY_S, _LATE_S = 0.1, 0.5  # that a click may be heard before and after it was handed over, as clocks tell
 _LAGS_S = np.arange(0.0, 0.4, 0.001)
 
 
@@ -110,24 +111,36 @@ def _play(path: Path, duration_s: float, progress: Progress) -> dict[str, object
     raise UserFacingError("The sound cannot be played through the sound server.", "Install libasound2-plugins.")
 
 
+def matched(heard_s: np.ndarray, handed_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return which heard clicks are which played ones, as rows of both; either may lack some, or have strange ones.
+
+    heard_s, handed_s : times by one clock; a click is heard within half a second of being handed over
+    """
+    played = np.abs(heard_s[:, None] - handed_s).argmin(axis=1)
+    wait_s = heard_s - handed_s[played]
+    near = np.flatnonzero((wait_s > -_EARLY_S) & (wait_s < _LATE_S))
+    first = np.unique(played[near], return_index=True)[1]
+    return near[first], played[near[first]]
+
+
 def _delays(
     heard: dict[str, object], clicks: np.ndarray, found: np.ndarray, frames: list[TimedFrame]
 ) -> dict[str, object]:
     n, times_s = np.array(heard["handed_over"]).T
     handed_s = times_s[np.searchsorted(n, clicks, side="right") - 1]
-    if len(found) < 2:
+    said_s, made_s = np.array([(frame.said_s, frame.made_s) for frame in frames]).T
+    rows, played = matched(np.interp(found / PLAYED_HZ * RATE_HZ, np.arange(len(said_s)), said_s), handed_s)
+    if len(rows) < 2:
         raise UserFacingError("The clicks that were played were not heard.")
-    made_s = np.array([frame.made_s for frame in frames])
-    shown = np.ceil(found / PLAYED_HZ * RATE_HZ - 1e-9).astype(int)  # the first frame that stands after the click
+    shown = np.ceil(found[rows] / PLAYED_HZ * RATE_HZ - 1e-9).astype(int)  # the first frame that stands after the click
     inside = shown < len(made_s)
-    missed = len(clicks) - len(found)
-    delays_ms = 1000.0 * (made_s[shown[inside]] - handed_s[: len(found)][inside]) if missed == 0 else np.array([np.nan])
-    off = np.diff(found) - round(_CLICK_EVERY_S * PLAYED_HZ)
+    delays_ms = 1000.0 * (made_s[shown[inside]] - handed_s[played[inside]])
+    off = np.diff(found[rows] - clicks[played])
     return {
         "delay_ms": {"median": float(np.median(delays_ms)), "p95": float(np.percentile(delays_ms, 95)),
                      "p99": float(np.percentile(delays_ms, 99)), "longest": float(delays_ms.max()),
                      "clicks": len(delays_ms)},
-        "lost": {"clicks_missed": missed, "places": int(np.count_nonzero(np.abs(off) > 1)),
+        "lost": {"clicks_missed": len(clicks) - len(rows), "places": int(np.count_nonzero(np.abs(off) > 1)),
                  "samples_missing": int(-off[off < -1].sum()), "samples_added": int(off[off > 1].sum())},
     }  # fmt: skip
 
