@@ -5,8 +5,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from core.errors import UserFacingError
+from core.face import own_face_photo
 from core.face.face import PARTS
-from core.face.own_face_photo import PhotoCamera, fit_camera, photo_texture
+from core.face.own_face_photo import PhotoCamera, fit_camera, photo_texture, without_light
 from core.face.own_face_points import generic_points
 from core.face.own_face_raster import covered_pixels
 from core.face.own_face_scan import Scan
@@ -126,8 +127,10 @@ def test_points_that_no_camera_sees_are_one_sentence(face):
         fit_camera(places, shuffled, (800, 1000))
 
 
-def test_a_photo_is_laid_where_the_camera_saw_it_and_mirrored_where_it_did_not(face, uv, skin):
-    turned = replace_turn(50)  # from the character's left, so that the right cheek is hidden
+def test_a_photo_is_laid_where_the_camera_saw_it_and_mirrored_where_it_did_not(face, uv, skin, monkeypatch):
+    # these colours change with the place as light does
+    monkeypatch.setattr(own_face_photo, "without_light", lambda colours, normals, sure: colours)
+    turned = turned_camera(50)  # from the character's left, so that the right cheek is hidden
     width, height = 400, 500
     at, depth = turned.seen(face.positions.astype(float))
     owner, bary = covered_pixels(at[skin], width, height, depth[skin])
@@ -142,7 +145,23 @@ def test_a_photo_is_laid_where_the_camera_saw_it_and_mirrored_where_it_did_not(f
     assert texture.min() > 10  # nothing of the ground behind the head
 
 
-def replace_turn(degrees):
+def test_the_light_of_a_photo_goes_and_dark_brows_stay():
+    rng = np.random.default_rng(4)
+    normals = rng.normal(size=(8000, 3))
+    normals[:, 2] = np.abs(normals[:, 2])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    light = 0.35 + 0.65 * np.clip(normals @ [0.6, 0.5, 0.62], 0, 1)
+    skin = np.array([180.0, 130.0, 110.0])
+    brow = rng.random(8000) < 0.08
+    colours = light[:, None] * np.where(brow[:, None], 0.3 * skin, skin)
+    flat = without_light(colours, normals, np.ones(8000))
+    spread = [np.log(c[~brow]).std(axis=0).max() for c in (colours, flat)]
+    assert spread[1] < 0.5 * spread[0]
+    assert np.median(flat[brow]) < 0.45 * np.median(flat[~brow])
+    np.testing.assert_array_equal(without_light(colours, normals, np.zeros(8000)), colours)
+
+
+def turned_camera(degrees):
     turn = Rotation.from_euler("y", -degrees, degrees=True).as_matrix()
     return PhotoCamera(turn, np.array([0.0, 40.0, -1000.0]), 1100.0, np.array([200.0, 250.0]), 0.0)
 
