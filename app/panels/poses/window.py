@@ -58,6 +58,7 @@ class KeyPosesWindow(QWidget):
         self._arrange()
         self._join()
         self.refresh()
+        self.resize(self.sizeHint())  # Qt by itself takes two thirds of the screen at most
 
     def _arrange(self) -> None:
         self.captured, self.posed = CapturedPane(), PosedPane()
