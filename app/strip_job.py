@@ -13,8 +13,8 @@ from app.strips import StripRow, StripSettings, film_strip, moments
 from app.texts import strips as texts
 from core.errors import UserFacingError
 from core.face.default_face import FaceUnavailable
-from core.media.image_sequence import encode_png
-from core.media.swap_in import check_target, swapped_in
+from core.media.image_sequence import write_png
+from core.media.swap_in import check_target
 from core.motion.capture import capture_of
 from core.motion.database import MotionDatabase
 from core.progress import SILENT, Progress
@@ -64,7 +64,7 @@ def run(job: StripJob, progress: Progress = SILENT) -> dict[str, object]:
         except FaceUnavailable as error:
             warnings.append(str(error))
     picture = film_strip(rows, rig, speech.transcript, job.settings, progress.part(0.65, 1.0))
-    write_picture(job.output, picture)
+    write_png(job.output, picture)
     return {
         "outputs": [str(job.output)], "rows": [row.label for row in rows], "times_s": list(times_s),
         "text": speech.text, "size": [picture.shape[1], picture.shape[0]],
@@ -77,13 +77,6 @@ def check_strip_path(path: Path) -> None:
     if path.suffix.lower() != ".png":
         raise UserFacingError(f"'{path}' is no .png, as which strips are written.")
     check_target(path)
-
-
-def write_picture(path: Path, picture) -> None:
-    """Write a picture, uint8, shape (height, width, 3), as PNG, whole or not at all."""
-    data = encode_png(picture)
-    with swapped_in(path) as beside:
-        beside.write_bytes(data)
 
 
 def _rows(

@@ -76,8 +76,8 @@ def film_strip(
     Head and eyes rest, so that nothing but the face differs from picture to picture; the tongue moves.
     """
     times_s = moments(transcript, settings)
-    sampled = [_at_times(row.motion, times_s) for row in rows]
-    motion = MarkerMotion(np.concatenate(sampled), 1.0, rows[0].motion.markers)
+    sampled = np.concatenate([row.motion.at_times(times_s) for row in rows])
+    motion = MarkerMotion(sampled, 1.0, rows[0].motion.markers)
     tongue = PoseTracks.of(transcript, _TRACK_HZ, int(transcript.duration_s * _TRACK_HZ) + 1, head=False, gaze=False)
     chosen = [min(round(time_s * _TRACK_HZ), len(tongue.tongue) - 1) for time_s in times_s]
     tracks = replace(tongue, tongue=np.tile(tongue.tongue[chosen], (len(rows), 1)))
@@ -90,14 +90,6 @@ def film_strip(
     laid = [PictureRow(cells[r * n : (r + 1) * n], row.label) for r, row in enumerate(rows)]
     laid[-1] = replace(laid[-1], captions=captions, notes=notes)
     return picture_grid(laid, settings.title, _ground(settings.background))
-
-
-def _at_times(motion: MarkerMotion, times_s: Sequence[float]) -> np.ndarray:
-    place = np.clip(np.array(times_s) * motion.rate_hz, 0, len(motion.positions) - 1)
-    low = place.astype(int)
-    high = np.minimum(low + 1, len(motion.positions) - 1)
-    share = (place - low).astype(np.float32)[:, None, None]
-    return motion.positions[low] * (1 - share) + motion.positions[high] * share
 
 
 def _told(transcript: Transcript, time_s: float) -> tuple[str, str]:

@@ -21,8 +21,8 @@ from core.iface.keyframes import Keyframes
 from core.iface.motion_unit import NEUTRAL, PAPER_UTTERANCE, MotionUnits, MotionUnitSet
 from core.iface.paper_keyframes import captured_keyframes, drawn_keyframes
 from core.iface.units_of_database import spoken_deformations, units_of_database
-from core.media.image_sequence import encode_png
-from core.media.swap_in import check_target, swapped_in
+from core.media.image_sequence import write_png
+from core.media.swap_in import check_target
 from core.motion.curation import CurationList
 from core.motion.database import MotionDatabase
 from core.progress import SILENT, Progress
@@ -167,13 +167,8 @@ def _draw(
         else:
             title = texts.FIGURE_CAPTURED.format(name=database.name)
             picture = marker_figure(keyframes, rig, title, missing, stage)
-        _write(job.picture, picture)
+        write_png(job.picture, picture)
     if job.units_picture is not None:
         expression = next(iter(units.expressions), NEUTRAL)
         poses, names = unit_poses(units, expression), unit_names(units, expression)
-        _write(job.units_picture, units_figure(poses, names, rig, progress.part(0.6, 1.0)))
-
-
-def _write(path: Path, picture: np.ndarray) -> None:
-    with swapped_in(path) as beside:
-        beside.write_bytes(encode_png(picture))
+        write_png(job.units_picture, units_figure(poses, names, rig, progress.part(0.6, 1.0)))

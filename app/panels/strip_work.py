@@ -8,10 +8,11 @@ from pathlib import Path
 from app.child_process import run_apart
 from app.demo import open_named
 from app.pictures import FaceRig
-from app.strip_job import row_label, write_picture
+from app.strip_job import row_label
 from app.strips import StripRow, StripSettings, film_strip
 from app.texts import strips as texts
 from core.errors import UserFacingError
+from core.media.image_sequence import write_png
 from core.motion.capture import capture_of
 from core.progress import Progress
 from core.search.weights import SearchWeights
@@ -57,7 +58,7 @@ def _draw(request: StripRequest, progress: Progress) -> Path:
     if request.emotions or request.captured_text is not None:
         rows += _made(request, n_rows, progress.part(0.0, 0.6))
     picture = film_strip(rows, request.rig, transcript, request.settings, progress.part(0.6, 1.0))
-    write_picture(request.path, picture)
+    write_png(request.path, picture)
     return request.path
 
 

@@ -48,14 +48,20 @@ def write_images(
             target = numbered(path, first_number + k)
             if not target.exists():
                 new.append(target)
-            with swapped_in(target) as beside:
-                beside.write_bytes(encode_png(picture))
+            write_png(target, picture)
             written.append(target)
     except BaseException:
         for target in new:
             target.unlink(missing_ok=True)
         raise
     return written
+
+
+def write_png(path: Path, picture: np.ndarray) -> None:
+    """Write one picture, uint8, shape (height, width, 3), whole or not at all; raises `UserFacingError`."""
+    data = encode_png(picture)
+    with swapped_in(path) as beside:
+        beside.write_bytes(data)
 
 
 def encode_png(picture: np.ndarray) -> bytes:

@@ -19,12 +19,7 @@ def dubbed(motion: MarkerMotion, said: Transcript, heard: Transcript) -> MarkerM
     wanted_s, known_s = matched_times_s(heard, said)
     n_frames = max(1, round(heard.duration_s * motion.rate_hz))
     times_s = np.interp(np.arange(n_frames) / motion.rate_hz, wanted_s, known_s)
-    place = np.clip(times_s * motion.rate_hz, 0, len(motion.positions) - 1)
-    low = np.floor(place).astype(int)
-    high = np.minimum(low + 1, len(motion.positions) - 1)
-    share = (place - low).astype(np.float32)[:, None, None]
-    positions = motion.positions[low] * (1 - share) + motion.positions[high] * share
-    return MarkerMotion(positions, motion.rate_hz, motion.markers)
+    return MarkerMotion(motion.at_times(times_s), motion.rate_hz, motion.markers)
 
 
 def matched_times_s(one: Transcript, other: Transcript) -> tuple[np.ndarray, np.ndarray]:

@@ -20,8 +20,7 @@ from core.iface.keyframes import Keyframes
 from core.iface.motion_unit import NEUTRAL, MotionUnits
 from core.iface.paper_keyframes import captured_keyframes, drawn_keyframes
 from core.iface.units_of_database import spoken_deformations, units_of_database
-from core.media.image_sequence import encode_png
-from core.media.swap_in import swapped_in
+from core.media.image_sequence import write_png
 from core.motion.database import MotionDatabase
 from core.progress import Progress
 
@@ -102,6 +101,5 @@ def _draw(request: FigureRequest, progress: Progress) -> Path:
         picture = marker_figure(request.keyframes, request.rig, request.title, request.drawn, progress)
     else:
         picture = units_figure(request.poses, request.names, request.rig, progress)
-    with swapped_in(request.path) as beside:
-        beside.write_bytes(encode_png(picture))
+    write_png(request.path, picture)
     return request.path
