@@ -13,6 +13,7 @@ from app.export import VideoSettings, check_outputs, check_outputs_are_not_read,
 from app.speech import emotion_modifiers, load_speech, unheeded_speech
 from core.document.parts import FaceChoice
 from core.errors import UserFacingError
+from core.iface.engine import IfaceEngine
 from core.motion.database import MotionDatabase
 from core.motion.stored_weights import named_weights
 from core.progress import SILENT, Progress
@@ -49,12 +50,14 @@ class SynthesisJob:
     strict: bool = False
     language: str | None = None
     phone_table: str | None = None
+    model: Path | None = None
 
     @property
     def files_read(self) -> tuple[str, ...]:
         """Every file that is read for it; a few of the names are words (a text, a face of ours), and no files."""
         given = (self.audio, self.text, self.phones, self.database, self.emotions, self.face, self.marker_file,
-                 self.key_poses, self.weights, self.video.texture, self.lexicon, self.phone_table)  # fmt: skip
+                 self.key_poses, self.weights, self.video.texture, self.lexicon, self.phone_table,
+                 self.model)  # fmt: skip
         return tuple(str(name) for name in given if name is not None)
 
 
@@ -73,8 +76,11 @@ def made_ready(job: SynthesisJob, progress: Progress = SILENT) -> Ready:
     database = open_named(job.database, progress)
     weights = None if job.weights == "tuned" else named_weights(job.weights, database)
     kernels, backend_sentence = open_kernels(job.backend)
-    # a backend that was asked for by name shall do the work; all ways give the same path
-    engine = make_engine(job.engine, database, kernels, weights, exhaustive=job.backend != "auto")
+    if job.model is not None:
+        engine = IfaceEngine.of_file(database, job.model)
+    else:
+        # a backend that was asked for by name shall do the work; all ways give the same path
+        engine = make_engine(job.engine, database, kernels, weights, exhaustive=job.backend != "auto")
     return Ready(database, engine, backend_sentence, kernels.report.backend == "numpy" and not kernels.report.lost)
 
 
@@ -94,6 +100,8 @@ def run(job: SynthesisJob, progress: Progress = SILENT, ready: Ready | None = No
     if job.holds and not kind.can_hold:
         holding = ", ".join(name for name, known in ENGINES.items() if known.can_hold)
         raise UserFacingError(f"The engine '{job.engine}' cannot hold long sounds.", f"These can: {holding}.")
+    if job.model is not None and not kind.listens:
+        raise UserFacingError(f"The engine '{job.engine}' takes no trained face.", "The engine iface does.")
     ready = ready or made_ready(job, progress.part(0.0, 0.1))
     database, engine = ready.database, ready.engine
 

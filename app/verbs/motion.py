@@ -61,6 +61,7 @@ def synth(
     emotion: Annotated[str | None, typer.Option(help="neutral, happiness, anger or sadness.")] = None,
     emotions: Annotated[Path | None, typer.Option(help="Text lines `start end emotion [intensity]`.")] = None,
     engine: Annotated[str, typer.Option(help=_ENGINES)] = "search",
+    model: Annotated[Path | None, typer.Option(help="Engine iface: a face that `efase train iface` wrote.")] = None,
     hold: Hold = False,
     face: Annotated[
         str, typer.Option(help="default, ben, rosa, otto, pip, cast (all), or a mesh: OBJ, PLY, glTF.")
@@ -99,7 +100,7 @@ def synth(
         weights=weights,
         video=VideoSettings(frame_rate(fps), *video_size(size), style, start_frame, head, gaze, texture,
                             background_colour(background), span_of_time(span)),
-        lexicon=lexicon, strict=strict, language=language, phone_table=phone_table,
+        lexicon=lexicon, strict=strict, language=language, phone_table=phone_table, model=model,
     )  # fmt: skip
     with progress_bar("synth") as progress:
         if batch is None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from core.errors import UserFacingError
 from core.iface.default_model import default_model
 from core.iface.expression_ease import eased_strengths
-from core.iface.model_file import MODERN
+from core.iface.model_file import MODERN, load_model
 from core.iface.motion_unit import NEUTRAL
 from core.iface.speaking import SpeakingFace
 from core.iface.speech_features import RATE_HZ, speech_features
@@ -42,6 +43,17 @@ class IfaceEngine:
         self.name = "iface" if variant == MODERN else f"iface-{variant}"
         self.database, self.variant = database, variant
         self._face = face
+
+    @classmethod
+    def of_file(cls, database: MotionDatabase, path: Path) -> IfaceEngine:
+        """Make the engine of a face that `efase train iface` wrote; raises `UserFacingError` when it does not fit."""
+        model = load_model(path)
+        if model.markers != database.markers.names:
+            raise UserFacingError(
+                f"The face in '{path}' moves other markers than those of the database '{database.name}'.",
+                "Train one on this database.",
+            )
+        return cls(database, model.variant, model.face)
 
     def prepare(self, progress: Progress = SILENT) -> None:
         """Read the face of the database, or train it."""
