@@ -7,19 +7,22 @@ from __future__ import annotations
 
 import base64
 import binascii
+import contextlib
 import json
 import struct
+from collections.abc import Iterator
 from pathlib import Path
 from urllib.parse import unquote
 
 import numpy as np
 
 from core.errors import UserFacingError
-from core.face.mesh_readers import MOST_BYTES, RawMesh, check_mesh
+from core.face.mesh_readers import MOST_BYTES, MOST_VERTICES, RawMesh, check_mesh
 
 _COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 _TRIANGLES = 4
+_MOST_ELEMENTS = 16 * MOST_VERTICES  # of an accessor: one of zeros takes no room in the file, and may ask for any count
 # compressed meshes need a decoder of their own
 _UNREADABLE = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
 
@@ -34,20 +37,12 @@ def read_gltf_shapes(path: Path) -> tuple[RawMesh, dict[str, np.ndarray]]:
     Raises `UserFacingError` for a file that is missing, damaged or compressed.
     """
     path = Path(path)
-    try:
-        if path.stat().st_size > MOST_BYTES:
-            raise UserFacingError(f"'{path}' is larger than {MOST_BYTES // 2**20} MB.")
-        document, buffers = _opened(path, path.read_bytes())
+    with _told(path):
+        document, buffers = gltf_document(path)
         compressed = [name for name in _UNREADABLE if name in document.get("extensionsRequired", ())]
         if compressed:
             raise UserFacingError(f"'{path}' is compressed by {compressed[0]}.", "Export it again without compression.")
         mesh, shapes = _Scene(document, buffers).collected()
-    except OSError as error:
-        raise UserFacingError(f"'{path}' cannot be read: {error.strerror}.") from error
-    # whatever a damaged or hostile file does to the walk through its tables
-    except (ValueError, KeyError, IndexError, TypeError, AttributeError, RecursionError, OverflowError, MemoryError,
-            struct.error, binascii.Error) as error:  # fmt: skip
-        raise UserFacingError(f"'{path}' is not a readable glTF file.") from error
     check_mesh(mesh, path)
     for name, shape in shapes.items():
         if not np.isfinite(shape).all():
@@ -57,11 +52,21 @@ def read_gltf_shapes(path: Path) -> tuple[RawMesh, dict[str, np.ndarray]]:
 
 def gltf_document(path: Path) -> tuple[dict, list[bytes]]:
     """Return the JSON of a glTF or GLB file and its buffers; raises `UserFacingError`."""
-    try:
+    with _told(path):
+        if path.stat().st_size > MOST_BYTES:
+            raise UserFacingError(f"'{path}' is larger than {MOST_BYTES // 2**20} MB.")
         return _opened(path, path.read_bytes())
+
+
+@contextlib.contextmanager
+def _told(path: Path) -> Iterator[None]:
+    """Whatever a damaged or hostile file does to the walk through its tables is one sentence."""
+    try:
+        yield
     except OSError as error:
         raise UserFacingError(f"'{path}' cannot be read: {error.strerror}.") from error
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError, struct.error, binascii.Error) as error:
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError, RecursionError, OverflowError, MemoryError,
+            struct.error, binascii.Error) as error:  # fmt: skip
         raise UserFacingError(f"'{path}' is not a readable glTF file.") from error
 
 
@@ -184,6 +189,8 @@ class _Scene:
         accessor = self._document["accessors"][index]
         count, width = int(accessor["count"]), _WIDTHS[accessor["type"]]
         kind = np.dtype(_COMPONENTS[accessor["componentType"]])
+        if count > _MOST_ELEMENTS:
+            raise ValueError("an accessor asks for more than any face has")
         if "bufferView" in accessor:
             values = self._view(accessor["bufferView"], accessor.get("byteOffset", 0), kind, count, width).copy()
         else:

@@ -113,6 +113,8 @@ def test_vertices_and_shapes_are_those_that_trimesh_reads(tmp_path):
     [
         lambda d: d["accessors"][0].update(count=4),
         lambda d: d["accessors"][0].update(count=-1),
+        lambda d: (d["accessors"][0].update(count=10**10), d["accessors"][0].pop("bufferView")),
+        lambda d: (d["accessors"][0].update(count=10**10), d["bufferViews"][0].update(byteStride=0)),
         lambda d: d["bufferViews"][0].update(byteOffset=90),
         lambda d: d["nodes"][1].update(children=[0]),
         # 2 ** 40 ways lead down
