@@ -9,6 +9,7 @@ from app.pictures import FaceRig
 from app.stimuli.films import write_stimuli
 from app.stimuli.job import StimuliJob
 from app.stimuli.papers import write_papers
+from app.stimuli.real_films import with_real_films
 from app.stimuli.tracks import captured_tracks, faces_of, own_tracks
 from app.texts import stimuli as texts
 from core.errors import UserFacingError
@@ -34,6 +35,8 @@ def run(job: StimuliJob, progress: Progress = SILENT) -> dict[str, object]:
     expressions = tuple(emotion_named(name) for name in job.expressions)
     database = open_named(job.database, progress.part(0.0, 0.05))
     tracks = own_tracks(job.table, database) if job.table else captured_tracks(job.sentences, expressions, database)
+    if job.films is not None:
+        tracks = with_real_films(job.films, tracks, expressions)
     faces, warnings = faces_of(job.faces, tracks, expressions)
     plan = StudyPlan(tuple(t.name for t in tracks), expressions, faces, job.n_participants, job.seed, job.design)
     engine = make_engine(job.engine, database, open_kernels()[0])

@@ -9,6 +9,7 @@ import numpy as np
 
 from app.export import VideoSettings, export
 from app.pictures import FaceRig
+from app.stimuli.real_films import write_real_film
 from app.stimuli.tracks import Track, words_of
 from core.evaluation.stimuli import AUDIO, BIMODAL, CAPTURED, SILENT, Stimulus
 from core.media.audio import write_wav
@@ -39,13 +40,16 @@ def write_stimuli(
     for n, stimulus in enumerate(films):
         stage = progress.part(n / len(films), (n + 1) / len(films))
         track = by_name[stimulus.track]
-        if stimulus.face == CAPTURED:
+        path = folder / files[stimulus.code]
+        if stimulus.face == CAPTURED and track.films:
+            write_real_film(path, track.films[stimulus.expression], track, video, stage)
+        elif stimulus.face == CAPTURED:
             motion = _captured_motion(database, track, stimulus.expression)
+            export(motion, track.audio, rig, path, video, stage, track.transcript)
         else:
             motion, said = _synthetic_motion(database, engine, track, stimulus.expression, stage.part(0.0, 0.2))
             warnings += said
-        path = folder / files[stimulus.code]
-        export(motion, track.audio, rig, path, video, stage.part(0.2, 0.98), track.transcript)
+            export(motion, track.audio, rig, path, video, stage.part(0.2, 1.0), track.transcript)
         silent = code_of[SILENT, stimulus.track, stimulus.expression, stimulus.face]
         without_sound(path, folder / files[silent])
     for track in tracks:

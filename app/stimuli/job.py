@@ -19,6 +19,7 @@ class StimuliJob:
 
     sentences : captured sentences whose sound is used, by name; empty: three that were captured in all expressions
     table : CSV ``audio,text`` and perhaps ``phones`` of sounds of one's own instead
+    films : folder of films of a real speaker, ``AUDIO-EXPRESSION.mp4``, to be the captured faces; or None
     faces : of `core.evaluation.stimuli.FACES`; empty: both where there are captures of all, else the synthetic one
     film : suffix of the films
     """
@@ -27,6 +28,7 @@ class StimuliJob:
     database: Path | None = None
     sentences: tuple[str, ...] = ()
     table: Path | None = None
+    films: Path | None = None
     expressions: tuple[str, ...] = PAPER_EXPRESSIONS
     faces: tuple[str, ...] = ()
     engine: str = DEFAULT_ENGINE

@@ -52,13 +52,19 @@ def _readme(job: StimuliJob, plan: StudyPlan, n_stimuli: int, tracks: Sequence[T
         tracks="\n".join(f"  {track.name:<20} {track.text}" for track in tracks),
         spoken_in=texts.SPOKEN_OWN if job.table else texts.SPOKEN_CAPTURED,
         apart=texts.APART if engine_kind(job.engine).searches else texts.LEARNED_FROM,
-        captured=texts.CAPTURED_FACES if has_captured else texts.NO_CAPTURED_FACES,
+        captured=_captured_faces(job, has_captured), alike=texts.ALIKE_FILMED if job.films else texts.ALIKE,
         parts=texts.PARTS[plan.design][has_captured],
         groups=texts.GROUPS if len(plan.faces) > 1 else texts.MIRRORED,
         balance="" if plan.n_participants % plan.balanced_by == 0 else
         " " + texts.UNBALANCED.format(multiple=plan.balanced_by),
         answers=", ".join([*plan.expressions, NOT_SURE]),
     )  # fmt: skip
+
+
+def _captured_faces(job: StimuliJob, has_captured: bool) -> str:
+    if not has_captured:
+        return texts.NO_CAPTURED_FACES
+    return texts.CAPTURED_FACES if job.films is None else texts.FILMED_FACES
 
 
 def _version() -> str:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.speech import load_speech
@@ -28,13 +28,15 @@ class Track:
     """One audio of the study.
 
     takes : expression to the captured sentence of the same words, where there is one
+    films : expression to a film of a real speaker who says them; empty: the takes are shown
     """
 
     name: str
     audio: Audio
     transcript: Transcript
     text: str
-    takes: dict[str, CapturedSentence]
+    takes: Mapping[str, CapturedSentence]
+    films: Mapping[str, Path] = field(default_factory=dict)
 
 
 def captured_tracks(names: Sequence[str], expressions: Sequence[str], database: MotionDatabase) -> list[Track]:
@@ -106,7 +108,7 @@ def faces_of(
     for name in asked:
         if name not in FACES:
             raise UserFacingError(f"There is no face '{name[:40]}' in a study.", f"Choose among {', '.join(FACES)}.")
-    lacking = [(t.name, e) for t in tracks for e in expressions if e not in t.takes]
+    lacking = [(t.name, e) for t in tracks for e in expressions if e not in (t.films or t.takes)]
     if lacking and CAPTURED in asked:
         track, expression = lacking[0]
         raise UserFacingError(f"The words of '{track}' were not captured in {expression}.",

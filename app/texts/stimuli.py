@@ -14,6 +14,12 @@ LEARNED_FROM = " The engine learned\n                       from captures of the
 CAPTURED_FACES = """  captured             the same face moved by markers that were captured while the actor said these
                        words in that expression, phone by phone at the times of the audio. It is the
                        paper's "real" face (R) as far as motion goes; it is drawn, not filmed."""
+FILMED_FACES = """  captured             films of a real speaker, given with --films, under the same audio: the paper's
+                       "real" face (R)."""
+ALIKE = """Head, gaze and tongue move alike in all films of an audio: they are made from the sound, so that
+the faces differ by what is studied alone."""
+ALIKE_FILMED = """Head, gaze and tongue of the synthetic face move alike in all films of an audio: they are made
+from the sound."""
 NO_CAPTURED_FACES = "  There are no captured faces in this study."
 PARTS = {
     "paper": {

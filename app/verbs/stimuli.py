@@ -19,6 +19,9 @@ def stimuli(
         list[str] | None, typer.Option(help="Captured sentence to take the sound of; repeat for more. Else three.")
     ] = None,
     table: Annotated[Path | None, typer.Option(help="CSV `audio,text[,phones]` of sounds of your own instead.")] = None,
+    films: Annotated[
+        Path | None, typer.Option(help="Folder of films of a real speaker, AUDIO-EXPRESSION.mp4, as captured faces.")
+    ] = None,
     expressions: Annotated[
         str, typer.Option(help="Comma between; also the answers on offer, besides not sure.")
     ] = "neutral,happiness,sadness",
@@ -47,8 +50,8 @@ def stimuli(
     if sentence and table is not None:
         raise UserFacingError("The audio is told by --sentence and by --table; choose one of them.")
     job = StimuliJob(
-        out, db, tuple(sentence or ()), table, _listed(expressions), _listed(faces or ""), engine, face, participants,
-        seed, design, VideoSettings(frame_rate(fps), *video_size(size), style, head=head, gaze=head),
+        out, db, tuple(sentence or ()), table, films, _listed(expressions), _listed(faces or ""), engine, face,
+        participants, seed, design, VideoSettings(frame_rate(fps), *video_size(size), style, head=head, gaze=head),
         f".{film.lower().removeprefix('.')}",
     )  # fmt: skip
     with progress_bar("stimuli") as progress:

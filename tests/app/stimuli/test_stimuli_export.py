@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import csv
+import itertools
 import json
 import shutil
+from fractions import Fraction
 
+import av
+import numpy as np
 import pytest
 import soundfile
 
 from app.export import VideoSettings
 from app.stimuli.export import run
 from app.stimuli.job import StimuliJob
-from core.media.video import probe
+from core.media.video import probe, write_video
 from core.motion.database import open_database
 from core.progress import Cancelled, Progress
 from core.search.engine import SearchEngine
@@ -104,6 +108,37 @@ def test_captured_faces_are_shown_where_all_was_captured(tmp_path, database_path
     for speech, sentence in zip(asked_for, ("s0", "s4")):
         of_sentence = {nodes.name(n) for n in range(len(nodes)) if nodes.name(n).startswith(f"{sentence}:")}
         assert speech.removed == of_sentence and of_sentence
+
+
+def test_films_of_a_real_speaker_are_the_captured_faces(efase, tmp_path, database_path, sounds, settings_folder):
+    folder = tmp_path / "real"
+    folder.mkdir()
+    colours = {}
+    for n, (audio, expression) in enumerate(itertools.product(("one", "two"), EXPRESSIONS)):
+        colours[audio, expression] = 50 + 40 * n
+        picture = np.full((40, 40, 3), colours[audio, expression], np.uint8)
+        write_video(folder / f"{audio}-{expression}.avi", [picture] * 15, 15, Fraction(10))
+    out = tmp_path / "study"
+    words = asked(out, database_path, sounds, "--expressions", "neutral,happiness", "--films", folder, "--film", "avi")
+    code, _, err = efase(*words)
+    assert (code, err) == (0, "")
+    for row in rows_of(out / "key.csv"):
+        if row["face"] != "captured":
+            continue
+        facts = probe(out / row["file"])
+        assert (facts.width, facts.height, facts.fps) == (96, 64, 30)
+        assert (facts.audio_duration_s is None) == (row["kind"] == "silent")
+        with av.open(str(out / row["file"])) as container:
+            last = list(container.decode(video=0))[-1].to_ndarray(format="rgb24").astype(int)
+        # the square stands as large as it can, with black beside it
+        assert abs(last[32, 48] - colours[row["audio"], row["expression"]]).max() < 8
+        assert abs(last[3, 48] - colours[row["audio"], row["expression"]]).max() < 8 and last[32, 5].max() < 12
+    assert "films of a real speaker" in (out / "README.txt").read_text()
+    (folder / "two-neutral.avi").unlink()
+    code, _, err = efase(
+        *asked(tmp_path / "other", database_path, sounds, "--films", folder, "--expressions", "neutral")
+    )
+    assert code == 2 and "has no film 'two-neutral.mp4'" in err and not (tmp_path / "other").exists()
 
 
 class _EndsAfter(Progress):
