@@ -66,7 +66,7 @@ def followed(before: np.ndarray, now: np.ndarray, points: np.ndarray, guess: np.
     seen = (found & found_back).ravel().astype(bool) & within(points, before) & within(arrived[:, 0], now)
     seen &= np.isfinite(returned)
     trust = np.where(seen, np.exp(-np.square(np.minimum(returned, 1e3) / _RETURN_PX)), 0.0)
-    return Flow(arrived[:, 0].astype(float), trust, returned.astype(float))
+    return Flow(np.where(np.isfinite(arrived[:, 0]), arrived[:, 0], guess).astype(float), trust, returned.astype(float))
 
 
 def within(points: np.ndarray, look: np.ndarray) -> np.ndarray:

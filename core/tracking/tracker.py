@@ -117,7 +117,10 @@ class FaceTracker:
         self, look: np.ndarray, face: PosedUnits, step: Flow | None, start: AffineFit,
         corrections: Mapping[int, np.ndarray], levels: int = _NEAR_LEVELS, is_sure: bool = False,
     ) -> TrackedFrame:  # fmt: skip
-        """Constrain what the last picture says, then what the first one says of where that is."""
+        """Constrain what the last picture says, then what the first one says of where that is.
+
+        is_sure : a hand says that the face is there, however little of it is seen
+        """
         fit, count = start, len(face.base)
         seen, trust = np.zeros((0, 2)), np.zeros(0)
         if step is not None:
@@ -135,11 +138,8 @@ class FaceTracker:
         certain = np.clip(agreed / np.array([_TRUST_BEFORE, 1.0])[-times:, None], 0.0, 1.0).max(axis=0)
         certain = certain * within(points, look)
         drift = np.where(anchor_trust > 0.3, np.linalg.norm(anchored - points, axis=1), np.nan)
-        is_lost = (
-            certain.mean() < _FEWEST_SEEN or like < _LEAST_LIKE
-            or not _is_possible(self.state.fit.affine, answer.fit.affine)
-        )  # fmt: skip
-        if is_lost and not is_sure:
+        is_seen = is_sure or (certain.mean() >= _FEWEST_SEEN and like >= _LEAST_LIKE)
+        if not (is_seen and _is_possible(self.state.fit.affine, answer.fit.affine)):
             return self._held(face)
         return TrackedFrame(points, certain, drift, False, replace(self.state, fit=answer.fit))
 

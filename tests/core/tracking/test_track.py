@@ -111,6 +111,14 @@ def test_dark_pictures_are_lost_and_the_face_is_found_again(sheet, request_of, m
     assert _errors(track, made, model)[14:].mean() < 1.0
 
 
+def test_taking_up_within_dark_pictures_gives_the_same_too(sheet, request_of, model):
+    request = request_of(sheet(dark=frozenset({5, 6, 7}), n=14), "dark-short")
+    track = track_video(request)
+    for frame in (6, 8):
+        changed = replace(request, corrections={frame: {"m2": tuple(track.points[4, 8] + 2.0)}})
+        np.testing.assert_array_equal(track_video(changed, earlier=track).points, track_video(changed).points)
+
+
 def test_a_face_that_comes_back_elsewhere_is_looked_for(sheet, request_of, model):
     jump = np.zeros((24, 2))
     jump[12:] = (65.0, -18.0)
