@@ -88,14 +88,14 @@ def test_everybody_sees_each_silent_cell_once(design):
 
 def test_orders_differ_between_participants_and_are_no_favourites():
     """Over many participants each stimulus stands first, and last, about as often as any other."""
-    plan = replace(PAPER_PLAN, n_participants=900)
+    plan = replace(PAPER_PLAN, n_participants=450)
     firsts = Counter()
     for trials in by_participant(plan).values():
         part = [t for t in trials if t.part == 3]
         firsts[part[0].stimulus.code] += 1
         assert all(a.stimulus.track != b.stimulus.track for a, b in itertools.pairwise(part))
     assert len(firsts) == 18
-    assert all(20 < n < 84 for n in firsts.values())  # 50 expected; 4.5 standard deviations to either side
+    assert all(5 < n < 47 for n in firsts.values())  # 25 expected; 4.5 standard deviations to either side
 
 
 def test_with_one_kind_of_face_the_groups_mirror_each_other():

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pickle
+import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,10 +21,10 @@ _LEFT = Qt.MouseButton.LeftButton
 
 
 @pytest.fixture
-def units_window(open_window, qtbot, database_path):
-    """The page, with the units of the tiny database; its markers cannot be laid on a face."""
+def units_window(open_window, qtbot, database_path, tmp_path):
+    """The page, with the units of the tiny database (a copy, for what is removed); no face fits its markers."""
     main = open_window()
-    main.authoring.open_database(database_path)
+    main.authoring.open_database(Path(shutil.copy(database_path, tmp_path)))
     qtbot.waitUntil(lambda: main.authoring.document.database is not None, timeout=WAIT_MS)
     main.actions.by_name["units"].trigger()
     window = main.units
@@ -52,7 +54,7 @@ def on_show(window):
     return window.view._displacements
 
 
-def test_a_slider_moves_the_face_by_standard_deviations(units_window):
+def test_a_slider_moves_the_face_by_standard_deviations_of_what_counts(units_window, qtbot):
     window = units_window
     units = units_of_database(window.authoring.document.database)
     assert len(window.units.sliders) == len(units.utterance.units)
@@ -64,6 +66,16 @@ def test_a_slider_moves_the_face_by_standard_deviations(units_window):
     np.testing.assert_allclose(on_show(window).ravel(), expected, atol=1e-4)
     click(window.reset_button)
     np.testing.assert_allclose(on_show(window).ravel(), units.utterance.mean, atol=1e-4)
+
+    # nodes that are removed do not count any more
+    document = window.authoring.document
+    before = window.draft.learned.units.utterance.mean
+    name = document.database.nodes.name(int(np.flatnonzero(document.database.nodes.emotion == 0)[0]))
+    window.authoring.remove_nodes([name], "test")
+    qtbot.waitUntil(lambda: window.draft.learned.request.removed == {name}, timeout=WAIT_MS)
+    expected = units_of_database(document.database, removed={name}).utterance.mean
+    np.testing.assert_allclose(window.draft.learned.units.utterance.mean, expected)
+    assert np.abs(expected - before).max() > 0
 
 
 def test_keyframes_follow_the_units_and_the_units_follow_them(units_window):
@@ -98,7 +110,9 @@ def test_keyframes_follow_the_units_and_the_units_follow_them(units_window):
     assert not window.draft.of_displacements and window.draft.weights.min() >= 0
 
 
-def test_an_expression_brings_its_units_and_as_many_as_are_asked_for_show_the_same_face(units_window, qtbot):
+def test_an_expression_brings_its_units_and_as_many_as_are_asked_for_show_the_same_face(
+    units_window, qtbot, choose, tmp_path, monkeypatch
+):
     window, draft = units_window, units_window.draft
     n_spoken = draft.pose.n_spoken
     drag(window.units.sliders[0], 0.7)
@@ -128,18 +142,8 @@ def test_an_expression_brings_its_units_and_as_many_as_are_asked_for_show_the_sa
     lost = units.parameters(before.astype(float))[-1] * units.utterance.units[-1]
     np.testing.assert_allclose((before - on_show(window)).ravel(), lost, atol=1e-3)
 
-
-def test_what_cannot_be_is_told(open_window, qtbot, units_window):
-    click(units_window.save_keyframes)
-    assert texts.NEEDS_FACE in units_window.message.text
-    main = open_window()
-    main.actions.by_name["units"].trigger()
-    assert main.units.pane.is_empty and main.units.pane.empty_text == texts.NO_DATABASE
-    assert not main.units.save_units.isEnabled() and main.units.units.sliders == []
-
-
-def test_figures_go_to_another_process_as_they_are_on_show(units_window, choose, tmp_path, qtbot, monkeypatch):
-    window, sent = units_window, []
+    # figures go to another process as they are on show
+    sent = []
 
     def drawn(request, _progress):
         sent.append(pickle.loads(pickle.dumps(request)))
@@ -147,8 +151,6 @@ def test_figures_go_to_another_process_as_they_are_on_show(units_window, choose,
 
     monkeypatch.setattr(units_window_module, "draw", drawn)
     monkeypatch.setattr(type(window.authoring), "rig", property(lambda self: "a face"))
-    window.expression.setFocus()
-    QTest.keyClick(window.expression, Qt.Key.Key_Down)
     choose(tmp_path / "keyframes", tmp_path / "units.png")
     for button, name in ((window.save_keyframes, "keyframes.png"), (window.save_units, "units.png")):
         click(button)
@@ -165,12 +167,10 @@ def test_figures_go_to_another_process_as_they_are_on_show(units_window, choose,
     np.testing.assert_allclose(step, 2 * np.sqrt(units.utterance.variance[1]) * units.utterance.units[1], atol=1e-4)
 
 
-def test_units_are_learned_without_nodes_that_are_removed(units_window, qtbot):
-    window, document = units_window, units_window.authoring.document
-    before = window.draft.learned.units.utterance.mean
-    name = document.database.nodes.name(int(np.flatnonzero(document.database.nodes.emotion == 0)[0]))
-    window.authoring.remove_nodes([name], "test")
-    qtbot.waitUntil(lambda: window.draft.learned.request.removed == {name}, timeout=WAIT_MS)
-    expected = units_of_database(document.database, removed={name}).utterance.mean
-    np.testing.assert_allclose(window.draft.learned.units.utterance.mean, expected)
-    assert np.abs(expected - before).max() > 0
+def test_what_cannot_be_is_told(open_window, qtbot, units_window):
+    click(units_window.save_keyframes)
+    assert texts.NEEDS_FACE in units_window.message.text
+    main = open_window()
+    main.actions.by_name["units"].trigger()
+    assert main.units.pane.is_empty and main.units.pane.empty_text == texts.NO_DATABASE
+    assert not main.units.save_units.isEnabled() and main.units.units.sliders == []
