@@ -120,7 +120,7 @@ class Eyelids:
 
 
 def _lid(face: Face, side: str, unit: np.ndarray, marker: int, ball: np.ndarray, follows: np.ndarray) -> Lid:
-    blink = fitted_blink(face.positions, unit, _opening(face, ball), ball).astype(np.float32)
+    blink = fitted_blink(face.positions, unit, eye_opening(face, ball), ball).astype(np.float32)
     skin = face.vertices_of("skin")
     falls = -blink[skin, 1]
     most = max(float(falls.max()), 1e-6)
@@ -160,7 +160,7 @@ def _lid(face: Face, side: str, unit: np.ndarray, marker: int, ball: np.ndarray,
     )
 
 
-def _opening(face: Face, ball: np.ndarray) -> np.ndarray:
+def eye_opening(face: Face, ball: np.ndarray) -> np.ndarray:
     """Return the vertices of the skin's edge around one eyeball, int."""
     edges = np.sort(
         np.concatenate([face.triangles[:, [0, 1]], face.triangles[:, [1, 2]], face.triangles[:, [2, 0]]]), 1

@@ -17,14 +17,14 @@ from core.errors import UserFacingError
 from core.face.characters import CHARACTERS
 from core.face.face import Face
 from core.face.look import Look
-from core.face.own_face_closing import close, vertex_normals
+from core.face.own_face_closing import close
 from core.face.own_face_parts import place_parts
 from core.face.own_face_photo import PhotoCamera, fit_camera, photo_texture
 from core.face.own_face_points import feature_points, generic_points
 from core.face.own_face_protected import Protected
 from core.face.own_face_scan import Scan
 from core.face.own_face_shapes import carried_shapes
-from core.face.own_face_surface import Surface
+from core.face.own_face_surface import Surface, vertex_normals
 from core.face.own_face_texture import SIZE_PX, scan_texture, unwrapped
 from core.face.own_face_warp import LandmarkWarp, Placement, check_on_surface, doubtful_points, place_scan
 from core.progress import SILENT, Progress

@@ -21,7 +21,7 @@ from scipy.sparse import csc_matrix, csr_matrix, diags
 from scipy.sparse.linalg import splu
 
 from core.face.own_face_protected import Protected
-from core.face.own_face_surface import Surface
+from core.face.own_face_surface import Surface, vertex_normals
 from core.progress import SILENT, Progress
 
 REACH_MM = (70.0, 50.0, 40.0, 32.0, 26.0, 21.0, 17.0, 14.0, 11.0, 9.0, 7.5, 6.0, 5.0, 4.2, 3.6, 3.0)
@@ -115,14 +115,3 @@ def cotangent_laplacian(positions: np.ndarray, triangles: np.ndarray) -> tuple[c
     third = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6
     areas = sum(np.bincount(triangles[:, i], third, n) for i in range(3))
     return made, np.maximum(areas, 1e-3 * areas.mean())
-
-
-def vertex_normals(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Return unit normals, float64, shape (n, 3), of triangles counted round as seen from outside."""
-    a, b, c = positions[triangles].transpose(1, 0, 2)
-    cross = np.cross(b - a, c - a)
-    normals = np.zeros_like(positions)
-    for corner in range(3):
-        for axis in range(3):
-            normals[:, axis] += np.bincount(triangles[:, corner], cross[:, axis], len(positions))
-    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)

@@ -8,11 +8,11 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from core.face.face import PARTS, Face
-from core.face.own_face_closing import vertex_normals
 from core.face.own_face_scan import Scan
+from core.face.own_face_surface import vertex_normals
 
 SHOWN_MM = 300.0
-MOST_TRIANGLES = 160_000
+MOST_TRIANGLES = 100_000
 _FINEST = 400
 
 

@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from core.face.binding import similarity
 from core.face.face import PARTS, Face
-from core.face.own_face_protected import Protected, open_rim
+from core.face.own_face_protected import Protected
 
 MOUTH_PARTS = ("upper_teeth", "lower_teeth", "tongue")
 LASHES = tuple(part for part in PARTS if part.startswith("lashes"))
@@ -128,12 +128,3 @@ def _mouth_fit(face: Face, surface: np.ndarray, fitted: np.ndarray) -> tuple[flo
     away = np.linalg.norm(surface - (left + right) / 2, axis=1) / np.linalg.norm(left - right)
     near = away < 0.75
     return similarity(surface[near], fitted[near])
-
-
-def eye_opening(face: Face, side: str) -> np.ndarray:
-    """Return the vertices of the skin's rim around one eyeball, int."""
-    ball = face.positions[face.vertices_of(f"eye_{side}")]
-    rim = open_rim(face.triangles)
-    rim = rim[face.part[rim] == PARTS.index("skin")]
-    at = face.positions[rim]
-    return rim[(at > ball.min(axis=0) - 3.0).all(axis=1) & (at < ball.max(axis=0) + 3.0).all(axis=1)]

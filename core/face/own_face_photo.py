@@ -13,8 +13,8 @@ from scipy.spatial.transform import Rotation
 from core.errors import UserFacingError
 from core.face.binding import similarity
 from core.face.face import PARTS, Face
-from core.face.own_face_closing import vertex_normals
 from core.face.own_face_raster import covered_pixels
+from core.face.own_face_surface import vertex_normals
 from core.face.own_face_texture import SIZE_PX, SkinTexels, sampled
 from core.progress import SILENT, Progress
 

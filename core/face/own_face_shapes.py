@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from core.face.blink_fitting import fitted_blink
+from core.face.eyelids import eye_opening
 from core.face.face import Face
 from core.face.lip_contact import LipContact
-from core.face.own_face_parts import eye_opening
 
 BLINKS = {"eyeBlinkLeft": "left", "eyeBlinkRight": "right"}
 JAW, LIPS_TOGETHER = "jawOpen", "mouthClose"
@@ -29,7 +29,7 @@ def carried_shapes(generic: Face, frames: np.ndarray, fitted: Face) -> dict[str,
     for name, side in BLINKS.items():
         ball = fitted.positions[fitted.vertices_of(f"eye_{side}")]
         if name in units and len(ball):
-            rim = eye_opening(fitted, side)
+            rim = eye_opening(fitted, ball)
             units[name] = fitted_blink(fitted.positions, units[name], rim, ball).astype(np.float32)
     _shut_lips(generic, fitted, units)
     return units

@@ -43,7 +43,7 @@ class Surface:
         self.areas = np.linalg.norm(cross, axis=1) / 2
         self.normals = cross / np.maximum(2 * self.areas, 1e-12)[:, None]
         self._rim_edges = self._open_edges()
-        self.vertex_normals = _smooth_normals(len(self.positions), self.triangles, cross)
+        self.vertex_normals = vertex_normals(self.positions, self.triangles)
         self.samples, self.sample_triangle = self._sampled(spacing_mm)
         self._tree = cKDTree(self.samples)
 
@@ -153,9 +153,12 @@ def _put(bary: np.ndarray, where: np.ndarray, a: np.ndarray, b: np.ndarray, c: n
     bary[where] = np.stack([a, b, c], axis=1)[where]
 
 
-def _smooth_normals(count: int, triangles: np.ndarray, cross: np.ndarray) -> np.ndarray:
-    normals = np.zeros((count, 3))
+def vertex_normals(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Return unit normals, float64, shape (V, 3), of triangles counted round as seen from outside."""
+    a, b, c = positions[triangles].transpose(1, 0, 2)
+    cross = np.cross(b - a, c - a)
+    normals = np.zeros((len(positions), 3))
     for corner in range(3):
         for axis in range(3):
-            normals[:, axis] += np.bincount(triangles[:, corner], cross[:, axis], count)
+            normals[:, axis] += np.bincount(triangles[:, corner], cross[:, axis], len(positions))
     return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)

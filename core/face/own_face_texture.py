@@ -6,10 +6,9 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 
 from core.face.face import PARTS, Face
-from core.face.own_face_closing import vertex_normals
 from core.face.own_face_raster import covered_pixels
 from core.face.own_face_scan import Scan
-from core.face.own_face_surface import Surface
+from core.face.own_face_surface import Surface, vertex_normals
 from core.progress import SILENT, Progress
 
 SIZE_PX = 1024

@@ -9,30 +9,27 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import cKDTree
 
-from app.controlled_face import ControlledFace
 from app.face_light import face_light
 from app.own_face import save_own_face
+from app.panels.poses.posing import PosedFace
 from app.texts import own_face as texts
-from core.animeme.controls import ControlTrack
 from core.face.default_face import character_face
 from core.face.face import Face
 from core.face.own_face import OwnFace, fit_own_face, painted, painted_by_photo
-from core.face.own_face_closing import vertex_normals
 from core.face.own_face_display import Clickable, ShownScan
 from core.face.own_face_points import PointFile, generic_points, load_points
 from core.face.own_face_scan import Scan, read_scan
+from core.face.own_face_surface import vertex_normals
 from core.face.own_face_texture import distance_texture
 from core.media.picture import read_picture
 from core.progress import Progress
 from core.rig.rig import Rig
 from core.rig.teeth_room import with_room_for_teeth
-from core.synthesis.pose_tracks import PoseTracks
 from gpu.gl.complexion import grain
 from gpu.gl.face_arrays import FaceArrays
 
 FULL_MM = 2.0
 FAR_OFF = 0.02
-_ANY_RATE_HZ = 60.0
 
 
 @dataclass(frozen=True)
@@ -66,24 +63,6 @@ class StillFace:
     def normals_at(self, places: np.ndarray) -> np.ndarray:
         """Return the normals nearest to ``places`` (n, 3), unit, shape (n, 3)."""
         return self.normals[self.tree.query(places)[1]]
-
-
-@dataclass(frozen=True)
-class ShapedFace:
-    """A fitted face for a view: its pose is told by the values of its shapes."""
-
-    rig: Rig
-    arrays: FaceArrays
-
-    @property
-    def face(self) -> Face:
-        """The face at rest."""
-        return self.rig.face
-
-    def pose(self, values: np.ndarray) -> np.ndarray:
-        """Return the vertices for shapes of values (U,): float32, shape (V, 3), mm."""
-        track = ControlTrack(self.rig.names, np.asarray(values, float)[None], _ANY_RATE_HZ)
-        return next(ControlledFace(self.rig).controlled(track, PoseTracks(), 0, 1))[0]
 
 
 @dataclass(frozen=True)
@@ -124,8 +103,8 @@ class Fitted:
 
     own: OwnFace
     face: Face
-    shown: ShapedFace
-    distance: ShapedFace
+    shown: PosedFace
+    distance: PosedFace
     notes: tuple[str, ...]
 
 
@@ -190,7 +169,7 @@ def save(request: tuple[Face, Path], _progress: Progress) -> Path:
     return request[1]
 
 
-def _shaped(face: Face) -> ShapedFace:
-    made = ShapedFace(Rig.of(with_room_for_teeth(face)), FaceArrays.of(face))
+def _shaped(face: Face) -> PosedFace:
+    made = PosedFace(Rig.of(with_room_for_teeth(face)), FaceArrays.of(face))
     face_light().prepare(face, made.arrays)
     return made

@@ -10,14 +10,14 @@ from core.errors import UserFacingError
 from core.face import own_face_closing
 from core.face.binding import bind
 from core.face.blink_fitting import fitted_blink
-from core.face.eyelids import Eyelids
+from core.face.eyelids import Eyelids, eye_opening
 from core.face.face import PARTS
 from core.face.face_file import read_face, save_face
 from core.face.lip_contact import LipContact
 from core.face.marker_placement import ACTRESS_FILE, load_marker_file
 from core.face.own_face import fit_own_face, painted
 from core.face.own_face_closing import cotangent_laplacian
-from core.face.own_face_parts import eye_opening, local_frames
+from core.face.own_face_parts import local_frames
 from core.face.own_face_points import generic_points
 from core.face.own_face_protected import Protected
 from core.face.own_face_scan import Scan
@@ -71,6 +71,10 @@ def own(face, truth, true_points):
     return fit_own_face(face, scan_of(face, truth), clicked(true_points), name="other")
 
 
+def opening(face, side):
+    return eye_opening(face, face.positions[face.vertices_of(f"eye_{side}")])
+
+
 @pytest.fixture
 def few_rounds(monkeypatch):
     """For what does not need the last tenth of a millimetre."""
@@ -108,7 +112,7 @@ def test_eyes_stay_balls_behind_their_lids(face, own):
         for positions, ball_at, allowed in ((face.positions, before, None), (own.face.positions, ball, 0.3)):
             centre, radius = (ball_at.min(axis=0) + ball_at.max(axis=0)) / 2, np.ptp(ball_at[:, 0]) / 2
             centre[2] = ball_at[:, 2].max() - radius
-            rim = eye_opening(face, side)
+            rim = opening(face, side)
             away = np.linalg.norm(positions[rim] - centre, axis=1) / radius
             if allowed is None:
                 rest = away
@@ -123,7 +127,7 @@ def test_eyes_stay_balls_behind_their_lids(face, own):
 
 def test_a_blink_still_shuts_the_eyes(own):
     for side in ("left", "right"):
-        rim = eye_opening(own.face, side)
+        rim = opening(own.face, side)
         shut = own.face.positions + own.face.units[f"eyeBlink{side.capitalize()}"]
         at = own.face.positions[rim]
         first, last = at[at[:, 0].argmin()], at[at[:, 0].argmax()]
@@ -277,7 +281,7 @@ def test_mouth_and_lids_are_protected(face):
     assert (protected.share[part == PARTS.index("mouth_socket")] == 0).all()
     at = {int(v): k for k, v in enumerate(protected.surface)}
     for side in ("left", "right"):
-        assert protected.share[[at[int(v)] for v in eye_opening(face, side)]].max() == 0
+        assert protected.share[[at[int(v)] for v in opening(face, side)]].max() == 0
     for name in ("nose_tip", "chin", "cheek_left", "nose_bridge"):
         assert protected.share[at[face.landmarks[name]]] == 1
     upper, lower = face.positions[protected.surface[protected.pairs]].transpose(1, 0, 2)
