@@ -64,7 +64,7 @@ def synth(
     model: Annotated[Path | None, typer.Option(help="Engine iface: a face that `efase train iface` wrote.")] = None,
     hold: Hold = False,
     face: Annotated[
-        str, typer.Option(help="default, ben, rosa, otto, pip, cast (all), or a mesh: OBJ, PLY, glTF.")
+        str, typer.Option(help="default, ben, rosa, otto, pip, cast (all), a face file (.npz) or a mesh.")
     ] = "default",
     markers: Annotated[Path | None, typer.Option(help="CSV `marker,vertex` for a face of your own.")] = None,
     poses: KeyPoses = None,
