@@ -24,6 +24,8 @@ class UnitsDraft(QObject):
     by_keyframes : whether the face is that of the keyframes, which the units follow; off_mm : how near the one that
         follows comes, root mean square distance of a marker
 
+    trouble : why there are none, in a sentence; else nothing
+
     changed() : something else is to be shown
     """
 
@@ -33,6 +35,7 @@ class UnitsDraft(QObject):
         super().__init__(parent)
         self._jobs = jobs
         self.learned: Learned | None = None
+        self.trouble = ""
         self.source, self.of_displacements, self.bounded = CAPTURED, True, False
         self._forget()
 
@@ -48,14 +51,18 @@ class UnitsDraft(QObject):
         """Learn units anew; None is for no database."""
         if request is None:
             self._jobs.cancel("units")
-            self.learned = None
-            self._forget()
-            self.changed.emit()
+            self._show_none("")
         else:
-            self._jobs.start("units", texts.LEARNING, request, learn, self._on_learned)
+            self._jobs.start("units", texts.LEARNING, request, learn, self._on_learned,
+                             lambda error: self._show_none(str(error)))  # fmt: skip
+
+    def _show_none(self, trouble: str) -> None:
+        self.learned, self.trouble = None, trouble
+        self._forget()
+        self.changed.emit()
 
     def _on_learned(self, learned: Learned) -> None:
-        before, self.learned = self.learned, learned
+        before, self.learned, self.trouble = self.learned, learned, ""
         if self.source not in learned.keyframes:
             self.source = next(iter(learned.keyframes), CAPTURED)
         same = before is not None and before.request.database is learned.request.database

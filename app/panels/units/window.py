@@ -164,8 +164,9 @@ class UnitsWindow(QWidget):
         self.raise_()
         self.activateWindow()
         self._show_face()
-        learned, database = self.draft.learned, self.authoring.document.database
-        if learned is None or learned.request.database is not database:
+        learned, document = self.draft.learned, self.authoring.document
+        known = None if learned is None else (learned.request.database, learned.request.removed)
+        if known is None or known[0] is not document.database or known[1] != document.removed:
             self.learn()
 
     def learn(self) -> None:
@@ -321,7 +322,7 @@ class UnitsWindow(QWidget):
                 self.view.show_pose(self.draft.moved.astype(np.float32))
                 self.pane.show_content()
             else:
-                self.pane.show_empty(texts.LEARNING + "…")
+                self.pane.show_empty(self.draft.trouble or texts.LEARNING + "…")
 
     def _dress(self) -> None:
         self.view.set_style(Style.TEXTURED if self.style.key == texts.FACE[0] else Style.MARKERS)

@@ -170,6 +170,15 @@ def test_an_expression_brings_its_units_and_as_many_as_are_asked_for_show_the_sa
 def test_what_cannot_be_is_told(open_window, qtbot, units_window):
     click(units_window.save_keyframes)
     assert texts.NEEDS_FACE in units_window.message.text
+    # without neutral speech there is nothing to learn from
+    database = units_window.authoring.document.database
+    neutral = [database.nodes.name(n) for n in np.flatnonzero(database.nodes.emotion == 0).tolist()]
+    units_window.authoring.remove_nodes(neutral, "test")
+    qtbot.waitUntil(lambda: units_window.pane.is_empty and units_window.jobs.is_idle, timeout=WAIT_MS)
+    assert "has no neutral speech" in units_window.pane.empty_text and units_window.units.sliders == []
+    units_window.authoring.undo_stack.undo()
+    qtbot.waitUntil(lambda: not units_window.pane.is_empty, timeout=WAIT_MS)
+
     main = open_window()
     main.actions.by_name["units"].trigger()
     assert main.units.pane.is_empty and main.units.pane.empty_text == texts.NO_DATABASE
