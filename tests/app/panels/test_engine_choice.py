@@ -15,6 +15,7 @@ from core.document.content import ProjectContent
 from core.search.compute import NumpyKernels
 from core.synthesis import registry
 from core.synthesis.registry import make_engine
+from tests.core.iface.linear_face import LinearFace
 
 WAIT_MS = 20_000
 
@@ -87,6 +88,17 @@ def test_an_engine_without_a_path_says_so_in_the_empty_places(means_on_offer, an
     choose(window, qtbot, "search")
     assert document.path is not None and document.prices is not None
     assert window.control.engine.weights.isVisibleTo(window)
+
+
+def test_a_face_that_listens_makes_the_motion_and_has_no_path(animated, qtbot, monkeypatch):
+    document = animated.authoring.document
+    face = LinearFace(document.database.markers.rest)
+    monkeypatch.setattr("core.iface.engine.default_model", lambda *_: face)
+    for name in ("iface", "iface-paper"):
+        choose(animated, qtbot, name)
+        assert np.array_equal(document.motion.positions, made_by(document, name))
+        assert document.path is None and animated.control.engine.facts.text() == texts.NO_PATH
+    assert ProjectContent.from_json(ProjectContent.of(document).to_json()).engine == "iface-paper"
 
 
 def test_learning_animemes_can_be_given_up_and_taken_up_again(animated, qtbot, monkeypatch):
