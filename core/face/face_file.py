@@ -17,7 +17,12 @@ from core.face.look import Look
 FACE_SUFFIX = ".npz"
 FORMAT = 2
 MOST_TEXELS = 3 * 8192 * 8192
-UNREADABLE = (OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile, zlib.error)
+# RuntimeError: an archive said to be encrypted or packed in an unknown way, JSON nested without end;
+# MemoryError: an array said to be larger than any memory
+UNREADABLE = (
+    OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile, zlib.error, RuntimeError, OverflowError,
+    MemoryError,
+)  # fmt: skip
 
 
 def save_face(face: Face, path: Path) -> None:

@@ -27,6 +27,7 @@ VARIANTS = (MODERN, PAPER)
 _ANEW = "Train it anew with `efase train iface`."
 _UNIT_SET = ("mean", "units", "variance", "coverage")
 _MOST_BACK, _MOST_NETS = 1000, 1000
+_LARGEST = 1e30  # single precision holds it
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +95,7 @@ def _perceptrons(face: UnitFace) -> Mapping[str, tuple[Perceptron, ...]]:
 
 def _read(head: dict, arrays: dict[str, np.ndarray]) -> FaceModel:
     """Put a face together; raises one of `UNREADABLE` where its parts do not belong together."""
+    _must(all(_is_sound(a) for name, a in arrays.items() if name not in ("head", "classes_log_scales")))
     markers, expressions = tuple(map(str, head["markers"])), tuple(map(str, head["expressions"]))
     neutral, silence = (arrays[name].astype(np.float32) for name in ("neutral", "silence"))
     n_axes, (n_back, n_ahead) = int(head["axes"]), (int(n) for n in head["window"])
@@ -116,7 +118,6 @@ def _read(head: dict, arrays: dict[str, np.ndarray]) -> FaceModel:
         _must(variant == MODERN and 0 < len(head["nets"]) <= _MOST_NETS)
         sizes = [(n_heard, n_spoken + sum(n_shown))] * len(head["nets"])
         face = ModernFace(*shared, _read_perceptrons(head, arrays, "nets", sizes))
-    _must(all(np.isfinite(a).all() for name, a in arrays.items() if name not in ("head", "classes_log_scales")))
     return FaceModel(face, variant, markers, str(head["database"]), str(head["content_hash"]), int(head["seed"]))
 
 
@@ -150,10 +151,14 @@ def _perceptron(
 ) -> Perceptron:
     weights = [arrays[f"{name}_weights{j}"] for j in range(int(n_layers))]
     offsets = [arrays[f"{name}_offsets{j}"] for j in range(int(n_layers))]
-    _must(activation in ACTIVATIONS and len(weights) > 0)
+    _must(activation in ACTIVATIONS and len(weights) > 0 and all(row.ndim == 1 for row in offsets))
     widths = [n_inputs, *(len(row) for row in offsets)]
     _must(widths[-1] == n_outputs and all(w.shape == (a, b) for w, a, b in zip(weights, widths, widths[1:])))
     return Perceptron.of_layers(weights, offsets, activation)
+
+
+def _is_sound(array: np.ndarray) -> bool:
+    return array.dtype.kind == "f" and bool((np.abs(array) < _LARGEST).all())  # NaN is not below anything
 
 
 def _must(is_sound: bool) -> None:

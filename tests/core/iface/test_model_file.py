@@ -86,6 +86,36 @@ def test_a_head_that_lies_is_refused(models, head, told, tmp_path):
         load_model(_changed(tmp_path / "face.npz", tmp_path / "lies.npz", head=head))
 
 
+@pytest.mark.parametrize("wrong", [lambda a: a[..., None], lambda a: a * np.inf, lambda a: a.astype(complex),
+                                   lambda a: np.full(a.shape, 1e300), lambda a: a.astype("S4")])  # fmt: skip
+def test_arrays_of_another_kind_are_refused(models, wrong, tmp_path):
+    save_model(models["modern"], tmp_path / "face.npz")
+    with np.load(tmp_path / "face.npz") as kept:
+        offsets = kept["nets0_offsets0"]
+    with np.errstate(invalid="ignore"):
+        path = _changed(tmp_path / "face.npz", tmp_path / "changed.npz", nets0_offsets0=wrong(offsets))
+    with pytest.raises(UserFacingError, match=r"changed\.npz"):
+        load_model(path)
+
+
+@pytest.mark.parametrize("place, bits", [(8, 1), (8, 64), (10, 1), (10, 2), (6, 200)])  # flags, packing, version
+def test_an_archive_packed_in_an_unknown_way_is_told(models, place, bits, tmp_path):
+    path = tmp_path / "face.npz"
+    save_model(models["modern"], path)
+    whole = bytearray(path.read_bytes())
+    whole[whole.find(b"PK\x01\x02") + place] ^= bits
+    path.write_bytes(bytes(whole))
+    with pytest.raises(UserFacingError, match=r"face\.npz"):
+        load_model(path)
+
+
+@pytest.mark.parametrize("head", ["[" * 100_000, '{"format": "efase-iface", "version": 1, "axes": 1e999}'])
+def test_a_head_without_end_or_bounds_is_told(head, tmp_path):
+    np.savez(tmp_path / "face.npz", head=np.str_(head))
+    with pytest.raises(UserFacingError, match=r"face\.npz"):
+        load_model(tmp_path / "face.npz")
+
+
 def test_other_files_and_places_are_told(models, tmp_path):
     with pytest.raises(UserFacingError, match="no speaking face at"):
         load_model(tmp_path / "none.npz")
