@@ -7,7 +7,6 @@ from pathlib import Path
 
 from app.controlled_face import CAST, ControlledFace, one_rig, rig_controls, rig_named
 from app.pictures import face_pictures
-from core.animeme.controls import ControlTrack
 from core.document.parts import FaceChoice
 from core.errors import UserFacingError
 from core.face.characters import CHARACTERS
@@ -19,6 +18,7 @@ from core.media.video import SUFFIXES as FILM_SUFFIXES
 from core.media.video import write_video
 from core.pipeline.control_files import SUFFIXES, check_control_suffix, control_suffix, needs_rig, write_controls
 from core.progress import SILENT, Progress
+from core.rig.control_track import ControlTrack
 from core.rig.key_poses import load_key_poses
 from core.synthesis.marker_motion import MarkerMotion
 from core.synthesis.pose_tracks import PoseTracks

@@ -10,19 +10,19 @@ from pathlib import Path
 import numpy as np
 
 from app.pictures import Drawable, FaceRig
-from core.animeme.controls import ControlTrack
 from core.document.parts import FaceChoice
 from core.errors import UserFacingError
 from core.face.characters import CHARACTERS, DEFAULT
 from core.face.default_face import character_face
 from core.face.face import Face
 from core.face.face_file import FACE_SUFFIX
+from core.face.gltf_mesh import read_gltf_shapes
 from core.face.lip_contact import LipContact
 from core.face.mesh_files import face_of
 from core.face.moving_parts import MovingParts
 from core.motion.marker_set import MarkerSet
 from core.progress import SILENT, Progress
-from core.rig.gltf_mesh import read_gltf_shapes
+from core.rig.control_track import ControlTrack
 from core.rig.key_poses import KeyPoses, load_key_poses, posed_controls
 from core.rig.retarget import controls_of_motion
 from core.rig.rig import Rig, fitted

@@ -7,13 +7,13 @@ from pathlib import Path
 
 from app.control_export import check_control_outputs, write_track
 from app.export import VideoSettings, check_outputs_are_not_read
-from core.animeme.controls import ControlTrack
 from core.media.audio import Audio, load_audio
 from core.motion.readers.blendshape_files import read_blendshapes
 from core.motion.shape_mapping import mapped, read_shape_mapping
 from core.pipeline.blendshapes import controls_of
 from core.pipeline.curves import read_curves_json
 from core.progress import SILENT, Progress
+from core.rig.control_track import ControlTrack
 
 
 @dataclass(frozen=True)

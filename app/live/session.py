@@ -69,7 +69,7 @@ class LiveSession:
         self.level: LevelMeter | None = None
         self.drops: DropoutWatch | None = None
         self.n_overflows = self.n_clipped = self.n_faulty = self.n_frames = self.n_samples = 0
-        self.last_block_s = 0.0
+        self.last_block_s, self._n_sent_before = 0.0, 0
         self.waits: deque[tuple[float, float, float, float]] = deque(maxlen=_KEPT_FRAMES)
         self._source: Source | None = None
         self._thread: threading.Thread | None = None
@@ -131,6 +131,7 @@ class LiveSession:
         """Send each frame to another program from now on, or none."""
         before, self.outgoing = self.outgoing, outgoing
         if before is not None:
+            self._n_sent_before += before.n_sent
             before.close()
 
     def figures(self) -> dict[str, object]:
@@ -148,7 +149,7 @@ class LiveSession:
             "dropouts": 0 if drops is None else drops.dropouts,
             "lost_ms": 0.0 if drops is None else 1000.0 * drops.lost_s,
             "clipped_samples": self.n_clipped, "faulty_samples": self.n_faulty,
-            "sent": 0 if self.outgoing is None else self.outgoing.n_sent,
+            "sent": self._n_sent_before + (0 if self.outgoing is None else self.outgoing.n_sent),
         }  # fmt: skip
 
     # The session's own thread

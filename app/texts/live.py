@@ -63,7 +63,7 @@ DELAY_PART_TIPS = (
     "From markers to the picture on the screen",
 )
 NO_DELAY = "–"
-DROPS = "{n} drop-outs"
+DROPS = "drop-outs: {n}"
 DROPS_TIP = "How often sound was lost: told by the device, or missed by the clock"
 
 # Recording

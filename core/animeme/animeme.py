@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 
-from core.animeme.controls import ControlTrack
 from core.animeme.design import Scene
 from core.animeme.form import AnimemeForm
 from core.animeme.levels import N_PHONEMES, levels_of, sharing
@@ -17,6 +16,7 @@ from core.animeme.utterances import Nearby, Utterances
 from core.errors import UserFacingError
 from core.face.face_file import UNREADABLE, read_arrays
 from core.media.swap_in import swapped_in
+from core.rig.control_track import ControlTrack
 from core.speech.emotion import EmotionModifier
 from core.speech.phoneme import PHONEMES
 from core.speech.transcript import Transcript

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from core.animeme.controls import ControlTrack
 from core.animeme.examples import Example
 from core.animeme.material import LEARNING_RATE_HZ
 from core.errors import UserFacingError
@@ -17,6 +16,7 @@ from core.motion.shape_mapping import read_units
 from core.pipeline.blendshapes import controls_of
 from core.pipeline.curves import read_curves_json
 from core.progress import SILENT, Progress
+from core.rig.control_track import ControlTrack
 from core.speech.placing import ALIGNED, RECOGNISED, SILENCE, placed_speech
 from core.speech.text_file import read_text
 from core.speech.transcript import Transcript

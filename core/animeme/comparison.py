@@ -8,12 +8,12 @@ from typing import Protocol
 
 import numpy as np
 
-from core.animeme.controls import ControlTrack
 from core.animeme.examples import Example
 from core.animeme.form import BEST, COHEN_MASSARO, COHEN_MASSARO_NORMALISED, PRINTED
 from core.animeme.mmm import train_mmm
 from core.animeme.training import train_animemes
 from core.progress import SILENT, Progress
+from core.rig.control_track import ControlTrack
 from core.speech.transcript import Transcript
 
 

@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 
 from core.animeme.animeme import AnimemeModel, load_animemes
-from core.animeme.controls import ControlTrack
 from core.animeme.form import BEST, AnimemeForm
 from core.animeme.material import component_controls, database_examples
 from core.animeme.training import TrainingSettings, train_animemes
@@ -18,6 +17,7 @@ from core.errors import UserFacingError
 from core.folders import cache_dir
 from core.motion.database import MotionDatabase
 from core.progress import SILENT, Progress
+from core.rig.control_track import ControlTrack
 from core.synthesis.engine import SpeechInput
 from core.synthesis.marker_motion import MarkerMotion
 

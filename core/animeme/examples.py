@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.animeme.controls import ControlTrack
 from core.animeme.levels import N_PHONEMES
 from core.animeme.utterances import Nearby, Utterances
 from core.errors import UserFacingError
+from core.rig.control_track import ControlTrack
 from core.speech.emotion import EmotionModifier
 from core.speech.phoneme import PHONEME_INDEX
 from core.speech.transcript import Transcript

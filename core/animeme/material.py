@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from core.animeme.controls import ControlTrack
 from core.animeme.cross_mapping import RIDGE_MM2, solve_controls, solve_shares, units_at_markers
 from core.animeme.examples import Example
 from core.animeme.key_shapes import captured_keys
@@ -17,6 +16,7 @@ from core.motion.database import MotionDatabase
 from core.motion.head_space import in_head_space
 from core.motion.recording import Recording
 from core.progress import SILENT, Progress
+from core.rig.control_track import ControlTrack
 
 # Curves are learnt at the rate of video: at 120 Hz the frames say nearly the same, four times.
 LEARNING_RATE_HZ = 30.0

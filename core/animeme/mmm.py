@@ -18,12 +18,12 @@ import numpy as np
 from scipy.linalg import solveh_banded
 from scipy.special import comb
 
-from core.animeme.controls import ControlTrack
 from core.animeme.damping import START, damped_step
 from core.animeme.examples import Example, Lesson
 from core.animeme.levels import N_PHONEMES
 from core.animeme.utterances import Nearby, Utterances
 from core.progress import SILENT, Progress
+from core.rig.control_track import ControlTrack
 from core.speech.phoneme import VISEME_OF_PHONEME
 from core.speech.transcript import Transcript
 

@@ -11,6 +11,7 @@ import numpy as np
 from core.errors import UserFacingError
 from core.face.face import PARTS
 from core.face.geodesic import components
+from core.face.gltf_mesh import gltf_document, read_gltf_shapes
 from core.face.mesh_parts import guess_parts
 from core.face.mesh_readers import MOST_BYTES, RawMesh, check_mesh, read_mesh
 from core.media.picture import read_picture
@@ -100,8 +101,6 @@ def _read_other(path: Path) -> RawMesh:
     if path.suffix.lower() not in SUFFIXES:
         raise UserFacingError(f"{path} is no scan that can be read.", f"Known are {', '.join(SUFFIXES)}.")
     if path.suffix.lower() in (".gltf", ".glb"):
-        from core.rig.gltf_mesh import read_gltf_shapes
-
         # trimesh drops texture coordinates where there is no imaging library beside it
         return read_gltf_shapes(path)[0]
     return read_mesh(path)
@@ -172,8 +171,6 @@ def _inside(path: Path, name: str) -> Path | None:
 
 def _held_by_gltf(path: Path) -> bytes | Path | None:
     """Return the base colour picture of the first material that has one."""
-    from core.rig.gltf_mesh import gltf_document
-
     document, buffers = gltf_document(path)
     try:
         textures = [

@@ -8,6 +8,7 @@ import numpy as np
 
 FULL_SCALE = 0.999
 _FLOOR_DB = -90.0
+_RUSH_S = 3.0
 # A peak falls by this much in a second, so that it can be read.
 _FALL_DB_A_S = 24.0
 
@@ -45,23 +46,27 @@ class DropoutWatch:
 
     A block may come late, but what was lost never comes: from then on each block arrives later than its place in the
     sound says. The earliest arrival of each second is compared with that of the second before; a clock that is off by
-    a thousandth passes.
+    a thousandth passes. A sound server may begin with a rush of what it had gathered, so that the first seconds tell
+    nothing.
 
     dropouts : how often sound was lost; lost_s : how much of it in all
     """
 
     def __init__(self, rate_hz: int, least_s: float = 0.008) -> None:
         self._rate_hz, self._least_s = rate_hz, least_s
-        self._n, self._window_end_s = 0, 0.0
+        self._n, self._window_end_s, self._first_s = 0, 0.0, None
         self._lead: deque[float] = deque(maxlen=2)  # earliest arrival of the last second that is over, and of this one
         self.dropouts, self.lost_s = 0, 0.0
 
     def accept(self, n_samples: int, arrived_s: float) -> None:
         """Take a block of ``n_samples`` that arrived at ``arrived_s``, by a clock that runs evenly."""
+        if self._first_s is None:
+            self._first_s = arrived_s
         self._n += n_samples
         late_s = arrived_s - self._n / self._rate_hz
         if arrived_s >= self._window_end_s:
-            self._end_window()
+            if arrived_s - self._first_s > _RUSH_S:
+                self._end_window()
             self._window_end_s = arrived_s + 1.0
             self._lead.append(late_s)
         else:

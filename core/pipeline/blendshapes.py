@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.animeme.controls import ControlTrack
 from core.errors import UserFacingError
 from core.motion.blendshape_track import ARKIT_UNITS, BlendshapeTrack
 from core.rig.control_names import control_mixing
+from core.rig.control_track import ControlTrack
 
 
 def controls_of(captured: BlendshapeTrack) -> ControlTrack:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from core.animeme.controls import ControlTrack
 from core.motion.live_link_face import write_live_link_face
 from core.pipeline.blendshapes import arkit_weights
 from core.pipeline.curves import write_curves_csv, write_curves_json
 from core.pipeline.gltf import write_glb
 from core.pipeline.usd import SUFFIXES as _USD
 from core.pipeline.usd import check_usd, write_usd
+from core.rig.control_track import ControlTrack
 from core.rig.rig import Rig, fitted
 
 LIVE_LINK = ".livelink.csv"

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from core.animeme.controls import ControlTrack
 from core.errors import UserFacingError
 from core.media.swap_in import swapped_in
+from core.rig.control_track import ControlTrack
 from core.speech.text_file import read_text
 
 FORMAT = "efase-curves"

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import numpy as np
 
-from core.animeme.controls import ControlTrack
 from core.face.face import PARTS
 from core.media.swap_in import swapped_in
 from core.pipeline.vertex_colours import vertex_colours
+from core.rig.control_track import ControlTrack
 from core.rig.rig import Rig
 
 M_PER_MM = 0.001

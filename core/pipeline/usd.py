@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from core.animeme.controls import ControlTrack
 from core.errors import UserFacingError
 from core.face.face import PARTS
 from core.media.swap_in import swapped_in
 from core.pipeline.gltf import M_PER_MM
 from core.pipeline.vertex_colours import vertex_colours
+from core.rig.control_track import ControlTrack
 from core.rig.rig import Rig, poses
 
 SUFFIXES = (".usd", ".usda", ".usdc")

@@ -9,12 +9,12 @@ from typing import TypeVar
 
 import numpy as np
 
-from core.animeme.controls import ControlTrack
 from core.animeme.cross_mapping import solve_controls, units_at_markers
 from core.animeme.material import component_controls
 from core.face.characters import DEFAULT
 from core.face.default_face import character_face
 from core.motion.database import MotionDatabase
+from core.rig.control_track import ControlTrack
 from core.synthesis.control_edits import ControlEdits
 from core.synthesis.marker_motion import MarkerMotion
 from core.synthesis.polish import Polish, polished

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
-from core.animeme.controls import ControlTrack
 from core.animeme.cross_mapping import bounded_least_squares, solve_controls, solve_shares, units_at_markers
 from core.errors import UserFacingError
 from core.face.face import Face
 from core.media.swap_in import swapped_in
 from core.motion.marker_set import MarkerSet
 from core.rig.control_names import control_mixing
+from core.rig.control_track import ControlTrack
 from core.rig.rig import Rig
 from core.speech.text_file import read_text
 from core.synthesis.marker_motion import MarkerMotion

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from core.animeme.controls import ControlTrack
 from core.animeme.cross_mapping import solve_controls, units_at_markers
 from core.face.face import Face
+from core.rig.control_track import ControlTrack
 from core.rig.rig import Rig
 from core.synthesis.marker_motion import MarkerMotion
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.animeme.controls import ControlTrack
 from core.errors import UserFacingError
 from core.face.face import Face
 from core.rig.control_names import control_mixing
+from core.rig.control_track import ControlTrack
 
 BLOCK_BYTES = 32 * 2**20
 

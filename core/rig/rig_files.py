@@ -10,10 +10,10 @@ from core.errors import UserFacingError
 from core.face.characters import CHARACTERS
 from core.face.default_face import character_face
 from core.face.face_file import FACE_SUFFIX, read_face
+from core.face.gltf_mesh import read_gltf_shapes
 from core.face.mesh_files import face_of
 from core.face.mesh_readers import RawMesh, read_mesh
 from core.progress import SILENT, Progress
-from core.rig.gltf_mesh import read_gltf_shapes
 from core.rig.rig import Rig
 from core.rig.teeth_room import with_room_for_teeth
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from core.animeme.animeme import load_animemes
-from core.animeme.controls import ControlTrack
 from core.pipeline.curves import write_curves_csv
+from core.rig.control_track import ControlTrack
 
 
 @pytest.fixture

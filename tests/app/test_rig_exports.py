@@ -11,7 +11,6 @@ import pytest
 from app.control_export import write_motion_controls
 from app.export import VideoSettings, check_outputs, frame_rate, write_outputs
 from app.pictures import n_columns
-from core.animeme.controls import ControlTrack
 from core.document.parts import FaceChoice
 from core.errors import UserFacingError
 from core.face.default_face import FaceUnavailable, character_face
@@ -22,6 +21,7 @@ from core.motion.build import BuildSettings, build_database
 from core.motion.live_link_face import read_live_link_face
 from core.pipeline.curves import read_curves_json, write_curves_csv, write_curves_json
 from core.pipeline.gltf import write_glb
+from core.rig.control_track import ControlTrack
 from core.rig.key_poses import default_poses, load_key_poses
 from core.rig.rig import Rig, posed
 from core.rig.rig_files import load_rig

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from app.texts import compare as texts
-from core.animeme.controls import ControlTrack
 from core.evaluation.side_by_side import CAPTURED, DIFFERENCE, ERROR, GAP, LIP_DIFFERENCE, LIP_ERROR, WIDTH, SideBySide
+from core.rig.control_track import ControlTrack
 
 
 class Line(NamedTuple):

@@ -37,12 +37,12 @@ from app.panels.transport import Transport
 from app.settings import last_folder, remember_folder, window_settings
 from app.texts import compare as texts
 from app.theme import STEP
-from core.animeme.controls import ControlTrack
 from core.document.change import ASKED_OF_THE_SEARCH, Change
 from core.evaluation.known_capture import KnownCapture
 from core.evaluation.side_by_side import CAPTURED, SideBySide
 from core.media.video import FRAME_RATES
 from core.rig.control_layer import LIP_CONTROLS
+from core.rig.control_track import ControlTrack
 from core.synthesis.registry import DEFAULT_ENGINE, weights_of
 from gpu.gl.face import Style
 

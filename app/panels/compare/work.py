@@ -8,7 +8,6 @@ from pathlib import Path
 
 from app.comparison_words import title_of
 from app.texts import compare as texts
-from core.animeme.controls import ControlTrack
 from core.document.live_engine import LiveEngine
 from core.errors import UserFacingError
 from core.evaluation.course_table import write_course_table
@@ -17,6 +16,7 @@ from core.evaluation.side_by_side import CAPTURED, SideBySide
 from core.motion.database import MotionDatabase
 from core.progress import Progress
 from core.rig.control_layer import control_basis
+from core.rig.control_track import ControlTrack
 from core.search.weights import SearchWeights
 from core.synthesis.engine import SpeechInput
 from core.synthesis.marker_motion import MarkerMotion

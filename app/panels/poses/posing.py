@@ -9,10 +9,10 @@ from functools import cached_property
 import numpy as np
 
 from app.controlled_face import ControlledFace
-from core.animeme.controls import ControlTrack
 from core.face.face import Face
 from core.motion.marker_set import MarkerSet
 from core.rig.control_names import control_mixing
+from core.rig.control_track import ControlTrack
 from core.rig.key_poses import KeyPoses
 from core.rig.rig import Rig
 from core.synthesis.pose_tracks import PoseTracks

@@ -11,13 +11,13 @@ from PySide6.QtCore import QObject, Signal
 from app.authoring import Authoring
 from app.texts import curves as texts
 from core.animeme.animeme import AnimemeModel
-from core.animeme.controls import ControlTrack
 from core.animeme.ruling import Ruling, ruling_of
 from core.document.change import Change
 from core.errors import UserFacingError
 from core.motion.database import MotionDatabase
 from core.progress import Progress
 from core.rig.control_layer import ControlBasis, control_basis, edited_curves, motion_curves
+from core.rig.control_track import ControlTrack
 from core.speech.emotion import EmotionModifier
 from core.speech.transcript import Transcript
 from core.synthesis.control_edits import ControlEdits

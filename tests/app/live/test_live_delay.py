@@ -55,4 +55,5 @@ def test_the_face_is_less_than_180_ms_late_for_ten_minutes(record_property):
     assert answer["session"]["waits_ms"]["look_ahead"]["longest"] <= 100.0 + 1e-6
     assert answer["session"]["waits_ms"]["compute"]["p99"] < MOST_COMPUTE_MS
     # what a loaded machine does not play in time is the player's, and is not counted against what listens
-    assert answer["session"]["overflows"] == 0 and answer["lost"]["samples_missing"] == 0
+    assert answer["session"]["overflows"] == 0
+    assert answer["lost"]["samples_missing"] < 0.001 * TEN_MINUTES_S * PLAYED_HZ

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from core.animeme.animeme import AnimemeModel
-from core.animeme.controls import ControlTrack
 from core.animeme.examples import Example
 from core.animeme.form import AnimemeForm
 from core.animeme.levels import N_PHONEMES, levels_of
+from core.rig.control_track import ControlTrack
 from core.speech.emotion import EmotionModifier
 from core.speech.phoneme import PHONEME_INDEX
 from core.speech.transcript import PhonemeUtterance, Transcript

@@ -10,11 +10,11 @@ import soundfile
 
 from core.animeme import form as forms
 from core.animeme.artist_curves import CurveReading, read_artist_examples
-from core.animeme.controls import ControlTrack
 from core.animeme.training import train_animemes
 from core.errors import UserFacingError
 from core.motion.blendshape_track import ARKIT_UNITS
 from core.pipeline.curves import write_curves_csv, write_curves_json
+from core.rig.control_track import ControlTrack
 from core.speech.transcript import PhonemeUtterance, Transcript
 
 PRINTED = replace(forms.PRINTED, emotion_degree=-1)  # all that is said here is neutral

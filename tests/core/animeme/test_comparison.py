@@ -10,7 +10,7 @@ import pytest
 from core.animeme import comparison
 from core.animeme import form as forms
 from core.animeme.comparison import METHODS, rate_methods, rms_errors, spoken_like
-from core.animeme.controls import ControlTrack
+from core.rig.control_track import ControlTrack
 
 PRINTED = replace(forms.PRINTED, emotion_degree=-1)  # all that is said here is neutral
 

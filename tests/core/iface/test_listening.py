@@ -53,7 +53,9 @@ def test_sound_that_is_lost_is_counted_and_blocks_that_are_late_are_not():
     lossy = times_s.copy()
     lossy[1000:] += 0.030  # three blocks never came
     lossy[2000:] += 0.050
-    for quiet in (times_s, late, arrivals(3000, rng, 1.0005), arrivals(3000, rng, 0.9995)):
+    rush = times_s.copy()
+    rush[:150] = 5.0 + np.maximum(0.8, 0.01 * np.arange(1, 151) - 0.02)  # all that was gathered, and 20 ms too soon
+    for quiet in (times_s, late, rush, arrivals(3000, rng, 1.0005), arrivals(3000, rng, 0.9995)):
         assert watched(quiet).dropouts == 0
     watch = watched(lossy)
     assert watch.dropouts == 2 and watch.lost_s == pytest.approx(0.080, abs=0.004)

@@ -3,13 +3,13 @@ import json
 import numpy as np
 import pytest
 
-from core.animeme.controls import ControlTrack
 from core.errors import UserFacingError
 from core.motion.blendshape_track import ARKIT_UNITS, HEAD_AND_EYES, BlendshapeTrack
 from core.motion.live_link_face import read_live_link_face, write_live_link_face
 from core.motion.readers.blendshape_files import read_blendshapes
 from core.pipeline.blendshapes import arkit_weights, controls_of
 from core.pipeline.curves import read_curves_json, write_curves_csv, write_curves_json
+from core.rig.control_track import ControlTrack
 from tests.core.rig.small_rigs import random_track
 
 ANY_NAMES = ("jawOpen", "CTRL lips, wide", 'a "quoted" one', "Mund offen é")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.animeme.controls import ControlTrack
 from core.face.face import Face
+from core.rig.control_track import ControlTrack
 from core.rig.rig import Rig
 
 

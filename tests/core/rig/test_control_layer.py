@@ -8,10 +8,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from core.animeme.controls import ControlTrack
 from core.motion.marker_set import MarkerSet
 from core.motion.pca import MotionPca
 from core.rig.control_layer import ControlBasis, control_basis, edited_curves, laid_over, motion_curves
+from core.rig.control_track import ControlTrack
 from core.synthesis.control_edits import NO_CONTROL_EDITS, ControlKey
 from core.synthesis.marker_motion import MarkerMotion
 from core.synthesis.polish import NO_POLISH, Polish, polished

@@ -3,9 +3,9 @@ import json
 import numpy as np
 import pytest
 
-from core.animeme.controls import ControlTrack
 from core.errors import UserFacingError
 from core.motion.marker_set import MarkerSet
+from core.rig.control_track import ControlTrack
 from core.rig.key_poses import KeyPoses, load_key_poses, posed_controls, share_controls
 from core.synthesis.marker_motion import MarkerMotion
 from tests.core.rig.small_rigs import small_rig

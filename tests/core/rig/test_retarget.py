@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from core.animeme.controls import ControlTrack
 from core.errors import UserFacingError
 from core.face.default_face import FaceUnavailable, character_face
 from core.face.marker_placement import ACTRESS_FILE, load_marker_file, marker_set_on
+from core.rig.control_track import ControlTrack
 from core.rig.key_poses import default_poses
 from core.rig.retarget import controls_of_motion
 from core.rig.rig import Rig, posed

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from core.animeme.controls import ControlTrack
 from core.errors import UserFacingError
 from core.face.face import Face
 from core.rig.control_names import control_mixing
+from core.rig.control_track import ControlTrack
 from core.rig.rig import Rig, fitted, posed, poses
 from tests.core.rig.small_rigs import random_track, small_rig
 

@@ -5,10 +5,10 @@ import struct
 import numpy as np
 import pytest
 
-from core.animeme.controls import ControlTrack
 from core.errors import UserFacingError
+from core.face.gltf_mesh import read_gltf_shapes
 from core.pipeline.gltf import write_glb
-from core.rig.gltf_mesh import read_gltf_shapes
+from core.rig.control_track import ControlTrack
 from core.rig.rig import posed
 from core.rig.rig_files import load_rig
 from tests.core.rig.small_rigs import random_track, small_rig

@@ -8,8 +8,8 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLineEdit, QStyle, QStyleOptionSlider
 
-from core.animeme.controls import ControlTrack
 from core.pipeline.gltf import write_glb
+from core.rig.control_track import ControlTrack
 from core.rig.key_poses import KeyPoses, load_key_poses
 from tests.core.rig.small_rigs import small_rig
 

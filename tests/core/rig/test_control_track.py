@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from core.animeme.controls import ControlTrack
 from core.errors import UserFacingError
+from core.rig.control_track import ControlTrack
 
 
 def track(values, rate_hz=25.0, **more):
