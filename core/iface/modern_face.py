@@ -1,4 +1,4 @@
-"""The modern mapping beside the paper's: a few deeper perceptrons hear twelve frames, and are averaged."""
+"""The modern mapping beside the paper's: a few deeper perceptrons hear the window, and are averaged."""
 
 from __future__ import annotations
 

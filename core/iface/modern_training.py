@@ -28,7 +28,7 @@ class ModernSettings:
     n_utterance, n_expression : motion units, a share of the variance each
     """
 
-    n_back: int = 8
+    n_back: int = 3
     n_ahead: int = 3
     hidden: tuple[int, ...] = (128, 64)
     n_nets: int = 4
