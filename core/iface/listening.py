@@ -47,12 +47,12 @@ class DropoutWatch:
     A block may come late, but what was lost never comes: from then on each block arrives later than its place in the
     sound says. The earliest arrival of each second is compared with that of the second before; a clock that is off by
     a thousandth passes. A sound server may begin with a rush of what it had gathered, so that the first seconds tell
-    nothing.
+    nothing, and later move its buffer by a block of 10 ms when another program begins to play, which is no loss.
 
     dropouts : how often sound was lost; lost_s : how much of it in all
     """
 
-    def __init__(self, rate_hz: int, least_s: float = 0.008) -> None:
+    def __init__(self, rate_hz: int, least_s: float = 0.015) -> None:
         self._rate_hz, self._least_s = rate_hz, least_s
         self._n, self._window_end_s, self._first_s = 0, 0.0, None
         self._lead: deque[float] = deque(maxlen=2)  # earliest arrival of the last second that is over, and of this one
