@@ -7,13 +7,14 @@ import os
 import shutil
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from app.live.null_sink import null_sink
 from app.texts import SOUND_LOST
+from core.errors import UserFacingError
 
 SESSION = Path(__file__).with_name("sound_session.py")
 FRAME_S = 1 / 30
@@ -21,36 +22,19 @@ FIVE_MINUTES_S = 300
 
 
 @pytest.fixture
-def server(tmp_path):
+def server():
     """A sound server of our own with a sink that nobody hears: its process and the environment that finds it."""
-    if not all(map(shutil.which, ("pulseaudio", "parec", "pactl"))):
-        pytest.skip("pulseaudio and pulseaudio-utils are not installed")
-    socket = tmp_path / "native"
-    environment = {
-        **os.environ, "PULSE_RUNTIME_PATH": str(tmp_path), "PULSE_STATE_PATH": str(tmp_path),
-        "PULSE_SERVER": f"unix:{socket}", "PYTHONPATH": str(SESSION.parents[2]),
-    }  # fmt: skip
-    process = subprocess.Popen(
-        ["pulseaudio", "-n", "--exit-idle-time=-1", "--daemonize=no", "--use-pid-file=no",
-         "-L", f"module-native-protocol-unix socket={socket} auth-anonymous=1",
-         "-L", "module-null-sink sink_name=out rate=48000 channels=1"],
-        env={key: value for key, value in environment.items() if key != "PULSE_SERVER"},
-        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-    )  # fmt: skip
-    for _ in range(50):
-        if subprocess.run(["pactl", "info"], env=environment, capture_output=True, check=False).returncode == 0:
-            break
-        time.sleep(0.1)
-    else:
-        process.kill()
-        pytest.skip("a PulseAudio server does not start here")
+    if shutil.which("parec") is None:
+        pytest.skip("pulseaudio-utils is not installed")
     devices = "import sounddevice; sounddevice.query_devices(kind='output')"
-    if subprocess.run([sys.executable, "-c", devices], env=environment, capture_output=True, check=False).returncode:
-        process.kill()
-        pytest.skip("PortAudio does not reach PulseAudio (Debian package libasound2-plugins)")
-    yield process, environment
-    process.kill()
-    process.wait()
+    try:
+        with null_sink() as process:
+            environment = {**os.environ, "PYTHONPATH": str(SESSION.parents[2])}
+            if subprocess.run([sys.executable, "-c", devices], capture_output=True, check=False).returncode:
+                pytest.skip("PortAudio does not reach PulseAudio (Debian package libasound2-plugins)")
+            yield process, environment
+    except UserFacingError as error:
+        pytest.skip(error.message)
 
 
 def session(environment, *arguments):
