@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QByteArray, QEvent, Qt
 from PySide6.QtWidgets import QApplication, QInputDialog, QMessageBox, QSplitter, QVBoxLayout, QWidget
@@ -17,33 +15,21 @@ from app.emotion_colours import emotion_colours
 from app.garbage import MainThreadGarbage
 from app.icons import icon, renew_icons
 from app.menus import make_menus
-from app.panels.compare.window import CompareWindow
 from app.panels.control import WIDTH_PX, ControlPanel
 from app.panels.export_dialog import ExportDialog
-from app.panels.importing.window import ImportWindow
 from app.panels.isomap import IsomapPane
 from app.panels.lexicon import LexiconDialog
 from app.panels.motion import MotionPane
-from app.panels.poses.window import KeyPosesWindow
 from app.panels.preview import PreviewPane
 from app.panels.status import StatusLine
 from app.panels.strip_dialog import StripDialog
 from app.panels.timeline.bar import TimelinePane
 from app.panels.timeline.timeline import Timeline
-from app.panels.units.window import UnitsWindow
 from app.panels.video import VideoPane
-from app.texts import live as live_texts
-from app.texts import own_face as own_face_texts
-from app.texts import poses as pose_texts
-from app.texts import tracking as tracking_texts
 from app.theme import apply_theme
+from app.tool_windows import ToolWindows
 from app.versions import Versions
 from core.document.change import Change
-
-if TYPE_CHECKING:
-    from app.panels.live.window import LiveWindow
-    from app.panels.own_face.window import OwnFaceWindow
-    from app.panels.tracking.window import TrackingWindow
 
 DEMO_START = "demo-neutral"
 HIGHEST_START_FRAME = 10**7
@@ -73,44 +59,12 @@ class MainWindow(AskingWindow):
         self.lexicon = LexiconDialog(authoring.jobs, self)
         self.export_dialog = ExportDialog(authoring, self.settings, self)
         self.strip_dialog = StripDialog(authoring, self.settings, self)
-        self.importing = ImportWindow(authoring, self)
-        self.key_poses = KeyPosesWindow(authoring, self)
-        self.compare = CompareWindow(authoring, self)
-        self.units = UnitsWindow(authoring, self)
+        self.tools = ToolWindows(self)
         make_menus(self)
         self._join()
         self._restore_layout()
         self._garbage = MainThreadGarbage(self)
         self.timeline.setFocus()  # so that Space plays from the start, and is not typed into the transcript
-
-    @cached_property
-    def own_face(self) -> OwnFaceWindow:
-        """The window in which a face is fitted to a scan, made when it is first asked for: few ever do."""
-        from app.panels.own_face.window import OwnFaceWindow
-
-        return OwnFaceWindow(self.authoring, self)
-
-    @cached_property
-    def live(self) -> LiveWindow:
-        """The window in which the face speaks with a microphone, made when it is first asked for."""
-        from app.panels.live.window import LiveWindow
-
-        made = LiveWindow(self.authoring, self)
-        made.project_asked.connect(self.open_file)
-        return made
-
-    @cached_property
-    def tracking(self) -> TrackingWindow:
-        """The window in which a face is tracked in a video, made when it is first asked for."""
-        from app.panels.tracking.window import TrackingWindow
-
-        made = TrackingWindow(self.authoring, self)
-        made.import_asked.connect(self._import)
-        return made
-
-    def _import(self, paths: list[Path]) -> None:
-        self.importing.open_now()
-        self.importing.draft.add_files(paths)
 
     # Making
 
@@ -288,33 +242,12 @@ class MainWindow(AskingWindow):
         if unsaved and not self._gives_up(texts.CLOSE_UNSAVED.format(why=unsaved)):
             event.ignore()
             return
-        if self.key_poses.has_unsaved_poses and not self._gives_up(pose_texts.CLOSE_UNSAVED):
-            event.ignore()
-            return
-        live = self.__dict__.get("live")
-        if live is not None and live.has_unsaved_take and not self._gives_up(live_texts.CLOSE_UNSAVED):
-            event.ignore()
-            return
-        fits = self.__dict__.get("own_face")  # only where it was ever asked for
-        if fits is not None and fits.has_unsaved_face and not self._gives_up(own_face_texts.CLOSE_UNSAVED):
-            event.ignore()
-            return
-        tracking = self.__dict__.get("tracking")
-        if tracking is not None and tracking.has_unsaved_track and not self._gives_up(tracking_texts.CLOSE_UNSAVED):
+        if not all(self._gives_up(question) for question in self.tools.unsaved()):
             event.ignore()
             return
         self._save_layout()
         self.keeper.close()
-        self.importing.shut_down()
-        self.key_poses.shut_down()
-        self.compare.shut_down()
-        self.units.shut_down()
-        if live is not None:
-            live.shut_down()
-        if fits is not None:
-            fits.shut_down()
-        if tracking is not None:
-            tracking.shut_down()
+        self.tools.shut_down()
         self.authoring.shut_down()
         for pane in (self.motion, self.preview):
             pane.face_view.release()

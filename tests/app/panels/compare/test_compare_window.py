@@ -127,12 +127,12 @@ def test_the_main_window_opens_it_by_a_key_on_its_own_project(
     qtbot.waitUntil(lambda: authoring.can_synthesise, timeout=WAIT_MS)
     authoring.set_engine("search-single")
     QTest.keyClick(main, Qt.Key.Key_M, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
-    settled(qtbot, main.compare)
-    assert main.compare.compared.beside.names == ("search-single", "animeme")
-    assert main.compare.fairness.text() == texts.HELD_OUT
+    settled(qtbot, main.tools.compare)
+    assert main.tools.compare.compared.beside.names == ("search-single", "animeme")
+    assert main.tools.compare.fairness.text() == texts.HELD_OUT
     authoring.synthesise()
     qtbot.waitUntil(lambda: authoring.document.answer is not None, timeout=WAIT_MS)
-    shown = main.compare.compared.beside.motions[0].positions
+    shown = main.tools.compare.compared.beside.motions[0].positions
     np.testing.assert_allclose(shown, authoring.document.motion.positions[: len(shown)], atol=1e-3)
 
 

@@ -17,7 +17,7 @@ def test_the_window_and_the_command_make_the_same_database(
 ):
     window = open_window()
     QTest.keyClick(window, Qt.Key.Key_I, Qt.KeyboardModifier.ControlModifier)
-    assistant = window.importing
+    assistant = window.tools.importing
     qtbot.waitUntil(assistant.isActiveWindow)
     give_folder(assistant, grid_tracks)
     assert len(assistant.files.table.sentences.problems(assistant.draft.sentences[0])[0]) == 0

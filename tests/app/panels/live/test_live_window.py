@@ -82,10 +82,10 @@ def of_main(open_window, stand_in, database_path, qtbot):
     main.authoring.open_database(database_path)
     qtbot.waitUntil(lambda: main.authoring.document.database is not None, timeout=WAIT_MS)
     main.actions.by_name["live"].trigger()
-    opened(main.live, qtbot)
-    yield main.live
-    main.live.driver.stop()
-    main.live.driver.take = None
+    opened(main.tools.live, qtbot)
+    yield main.tools.live
+    main.tools.live.driver.stop()
+    main.tools.live.driver.take = None
 
 
 def opened(window, qtbot):

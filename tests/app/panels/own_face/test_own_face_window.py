@@ -41,7 +41,7 @@ def window(own_faces, scanned, open_window, choose, qtbot, monkeypatch):
     monkeypatch.setattr(own_face_closing, "REACH_MM", (60.0, 20.0, 8.0))
     main = open_window()
     main.actions.by_name["own_face"].trigger()
-    made = main.own_face
+    made = main.tools.own_face
     qtbot.waitUntil(lambda: made.draft.generic is not None, timeout=WAIT_MS)
     choose(scanned[0])
     click(made.scan_pane.open_button)

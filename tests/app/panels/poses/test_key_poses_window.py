@@ -26,7 +26,7 @@ def poses_window(own_faces, open_window, qtbot, database_path, monkeypatch):
     main.authoring.open_database(database_path)
     qtbot.waitUntil(lambda: main.authoring.document.database is not None, timeout=WAIT_MS)
     main.actions.by_name["key_poses"].trigger()
-    window = main.key_poses
+    window = main.tools.key_poses
     qtbot.waitUntil(lambda: window.draft.posing.face is not None, timeout=WAIT_MS)
     qtbot.waitUntil(lambda: window.jobs.is_idle)
     return window
@@ -237,7 +237,7 @@ def test_the_frame_at_the_playhead_becomes_a_shape(animated, qtbot, monkeypatch)
     monkeypatch.setattr(work, "default_face", none_here)
     monkeypatch.setattr(work, "load_rig", lambda _name, _progress: rig)
     animated.actions.by_name["key_poses"].trigger()
-    window, motion = animated.key_poses, animated.authoring.document.motion
+    window, motion = animated.tools.key_poses, animated.authoring.document.motion
     qtbot.waitUntil(lambda: window.draft.posing.face is not None, timeout=WAIT_MS)
     lips = motion.markers.group("lips")
     for frame in (12, 30):

@@ -27,7 +27,7 @@ def units_window(open_window, qtbot, database_path, tmp_path):
     main.authoring.open_database(Path(shutil.copy(database_path, tmp_path)))
     qtbot.waitUntil(lambda: main.authoring.document.database is not None, timeout=WAIT_MS)
     main.actions.by_name["units"].trigger()
-    window = main.units
+    window = main.tools.units
     qtbot.waitUntil(lambda: window.draft.pose is not None, timeout=WAIT_MS)
     return window
 
@@ -181,5 +181,5 @@ def test_what_cannot_be_is_told(open_window, qtbot, units_window):
 
     main = open_window()
     main.actions.by_name["units"].trigger()
-    assert main.units.pane.is_empty and main.units.pane.empty_text == texts.NO_DATABASE
-    assert not main.units.save_units.isEnabled() and main.units.units.sliders == []
+    assert main.tools.units.pane.is_empty and main.tools.units.pane.empty_text == texts.NO_DATABASE
+    assert not main.tools.units.save_units.isEnabled() and main.tools.units.units.sliders == []
