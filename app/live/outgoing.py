@@ -39,7 +39,7 @@ class StreamAddress:
             form, host, port = parts.scheme.lower(), parts.hostname, parts.port
         except ValueError:
             form, host, port = "", None, None
-        if form not in (_LIVE_LINK, _OSC) or not host or not port or parts.path or parts.username:
+        if form not in (_LIVE_LINK, _OSC) or not host or not port or any(parts[2:]) or parts.username:
             raise UserFacingError(texts.BAD_ADDRESS.format(address=address), texts.BAD_ADDRESS_REMEDY)
         return cls(form, host, port)
 

@@ -11,6 +11,7 @@ from core.errors import UserFacingError
 from core.tracking.face_model import CLICKED, FaceModel
 
 SMALLEST_PX = 16.0
+_LEAST_LIKENESS = 0.75  # of the clicks to the face, squared correlation; a turned or uncommon face has over 0.9
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ def placed(model: FaceModel, clicks: Mapping[str, tuple[float, float]], size_px:
 
     clicks : landmark to x, y in pixels, two or more; landmarks that the face lacks are left out
     size_px : width and height of the picture
-    Raises `UserFacingError` for clicks beside the picture or too close together.
+    Raises `UserFacingError` for clicks beside the picture, too close together, or not laid out as on a face.
     """
     used = {name: at for name, at in clicks.items() if name in model.landmarks}
     width, height = size_px
@@ -74,6 +75,10 @@ def placed(model: FaceModel, clicks: Mapping[str, tuple[float, float]], size_px:
     source = model.seen[[model.landmarks[name] for name in used]]
     # a similarity of the plane is a product of complex numbers
     a, b = ((points - points.mean(axis=0)) @ [1.0, 1.0j] for points in (source, target))
+    likeness = abs(np.vdot(a, b)) ** 2 / (np.vdot(a, a).real * np.vdot(b, b).real)
+    if likeness < _LEAST_LIKENESS:
+        raise UserFacingError("The points do not lie as the corners of a mouth and of eyes do.",
+                              "Click both mouth corners, then both outer eye corners.")  # fmt: skip
     factor = np.vdot(a, b) / np.vdot(a, a).real
     turn = np.array([[factor.real, -factor.imag], [factor.imag, factor.real]]) / abs(factor)
     scale = float(abs(factor))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,6 +14,7 @@ from core.tracking.face_model import ANY
 
 _FORMAT = "efase-tracking 1"
 _LARGEST_BYTES = 1 << 26
+_FURTHEST_PX = 1e6
 
 Places = Mapping[str, tuple[float, float]]
 
@@ -78,7 +78,7 @@ def _plain(places: Places) -> dict[str, list[float]]:
 def _places(path: Path, where: str, value: object) -> dict[str, tuple[float, float]]:
     def is_place(pair: object) -> bool:
         return isinstance(pair, list) and len(pair) == 2 and all(
-            isinstance(n, int | float) and not isinstance(n, bool) and math.isfinite(n) for n in pair
+            isinstance(n, int | float) and not isinstance(n, bool) and abs(n) < _FURTHEST_PX for n in pair
         )  # fmt: skip
 
     if not isinstance(value, dict):

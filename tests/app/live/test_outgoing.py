@@ -77,6 +77,7 @@ def test_nobody_needs_to_listen(markers):
 
 
 NO_ADDRESSES = [
+    "udp://localhost:9?x", "udp://localhost:9#x",
     "", "127.0.0.1:11111", "udp://127.0.0.1", "udp://:11111", "udp://h:99999", "tcp://127.0.0.1:1", "udp://h:x",
     "udp://h:1/face", "udp://me@h:1", "udp://[h:1",
 ]  # fmt: skip

@@ -61,3 +61,19 @@ def test_other_numbers_of_points_are_refused(points):
 def test_impossible_clicks_are_refused(model, mouth, why):
     with pytest.raises(UserFacingError, match=why):
         placed(model, dict(zip(CLICKED, mouth)), SIZE)
+
+
+@pytest.mark.parametrize("eyes", [((250, 330), (390, 330)), ((320, 330), (321, 330)), ((10, 10), (10, 470))])
+def test_eyes_that_lie_nowhere_near_a_face_are_refused(model, eyes):
+    clicks = dict(zip(CLICKED, ((250, 330), (390, 330), *eyes)))
+    with pytest.raises(UserFacingError, match="do not lie as"):
+        placed(model, clicks, SIZE)
+
+
+@pytest.mark.parametrize("shape", [(0.75, 1.0), (1.0, 0.75), (1.2, 0.9)])
+def test_a_turned_a_nodding_and_a_broad_face_are_laid(model, shape):
+    clicks, _ = _clicked(model, 0.0, 2.0, (320.0, 240.0))
+    squeezed = {
+        name: (320.0 + shape[0] * (x - 320.0), 240.0 + shape[1] * (y - 240.0)) for name, (x, y) in clicks.items()
+    }
+    assert placed(model, squeezed, SIZE).scale > 0

@@ -22,6 +22,7 @@ def test_it_comes_back(tmp_path):
     ("change", "why"),
     [({"format": "other"}, "does not hold"), ({"clicks": {"elbow": [1, 2]}}, "no point of a face"),
      ({"clicks": {"chin": [1]}}, "pair of pixels"), ({"clicks": {"chin": [1, float("nan")]}}, "pair of pixels"),
+     ({"clicks": {"chin": [1, 10**4000]}}, "pair of pixels"), ({"clicks": {"chin": [-1e300, 1]}}, "pair of pixels"),
      ({"clicks": []}, "lacks clicks"), ({"corrections": {"-1": {}}}, "not frames"),
      ({"corrections": {"3": {"chin": "x"}}}, "pair of pixels"), ({"expression": 3}, "not a name")],
 )  # fmt: skip
