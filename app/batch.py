@@ -136,7 +136,7 @@ def _synthesise(line: int, job: SynthesisJob) -> tuple[int, str, list[str]]:
 
     try:
         with threadpool_limits(1):  # as many processes as cores are at work
-            key = (job.database, job.engine, job.weights, job.backend)
+            key = (job.database, job.engine, job.weights, job.backend, job.model)
             if key not in _ready:
                 _ready.clear()
                 _ready[key] = made_ready(job)
