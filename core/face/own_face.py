@@ -26,7 +26,14 @@ from core.face.own_face_scan import Scan
 from core.face.own_face_shapes import carried_shapes
 from core.face.own_face_surface import Surface, vertex_normals
 from core.face.own_face_texture import SIZE_PX, scan_texture, unwrapped
-from core.face.own_face_warp import LandmarkWarp, Placement, check_on_surface, doubtful_points, place_scan
+from core.face.own_face_warp import (
+    ANOTHER_SCAN,
+    LandmarkWarp,
+    Placement,
+    check_on_surface,
+    doubtful_points,
+    place_scan,
+)
 from core.progress import SILENT, Progress
 
 FEWEST_SURE = 7
@@ -101,7 +108,10 @@ def fit_own_face(
     placed = scan.placed(placement.scale, placement.rotation, placement.shift)
     keys = [key for key in known if key in points]
     targets = placement.apply([points[key] for key in keys])
-    placed = replace(placed, triangles=_near_head(placed, targets, generic))
+    near = _near_head(placed, targets, generic)
+    if len(near) == 0:
+        raise UserFacingError("The points lie far off the scan's surface.", ANOTHER_SCAN)
+    placed = replace(placed, triangles=near)
     surface = Surface(placed.positions, placed.triangles)
     away = dict(zip(keys, surface.nearest(targets).distance.tolist()))
     check_on_surface(points, away, placement.scale * scan.size)

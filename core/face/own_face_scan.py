@@ -197,8 +197,11 @@ def _vertex_colours(path: Path, count: int) -> np.ndarray | None:
             rows = [line.split()[4:7] for line in file if line.startswith("v ")]
         if len(rows) != count or any(len(row) != 3 for row in rows):
             return None
-        colours = np.array(rows, float)
-        return np.clip(np.nan_to_num(colours) * 255.0 + 0.5, 0, 255).astype(np.uint8)
+        try:
+            colours = np.nan_to_num(np.array(rows, float))
+        except ValueError:
+            return None
+        return (np.clip(colours, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
     if suffix != ".ply":
         return None
     import trimesh

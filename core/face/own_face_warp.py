@@ -16,6 +16,7 @@ from core.face.own_face_points import feature_points
 EYES_RATIO = 1.6
 DEEP_ENOUGH = 0.12  # the points' depth to their width, below which they say nothing of how deep the head is
 FEWEST_FOR_AFFINE = 10
+ANOTHER_SCAN = "Were these points set on another scan?"
 SAME_PLACE = 0.005  # of the points' spread
 FAR_OFF = 0.02  # of the scan's size
 MISPLACED, MISPLACED_SHARE = 3.0, 0.3  # of what the similarity misses the other points by, and of the eyes' distance
@@ -54,8 +55,12 @@ def place_scan(
     target = np.array([generic[key] for key in keys])
     middle = source - source.mean(axis=0)
     spread = np.linalg.svd(middle, compute_uv=False)
-    if spread[0] <= 0 or spread[1] < 0.05 * spread[0]:
-        raise UserFacingError("The points on the scan lie in one place or on one line, so they tell no head's pose.")
+    for name, places in (("scan", middle), ("generic face", target - target.mean(axis=0))):
+        longest, across = np.linalg.svd(places, compute_uv=False)[:2]
+        if longest <= 0 or across < 0.05 * longest:
+            raise UserFacingError(
+                f"The points on the {name} lie in one place or on one line, so they tell no head's pose."
+            )
     close = np.linalg.norm(source[:, None] - source[None], axis=2) + np.eye(len(source)) * spread[0]
     if close.min() < SAME_PLACE * spread[0]:
         a, b = (keys[k] for k in np.unravel_index(close.argmin(), close.shape))
@@ -92,7 +97,7 @@ def check_on_surface(points: Mapping[str, np.ndarray], away: Mapping[str, float]
         worst = max(far, key=far.get)
         raise UserFacingError(
             f"The point {worst} lies {far[worst] / size:.0%} of the scan's size off its surface.",
-            "Were these points set on another scan?",
+            ANOTHER_SCAN,
         )
 
 

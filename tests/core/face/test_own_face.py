@@ -243,6 +243,9 @@ def test_points_that_are_not_on_the_scan_are_one_sentence(face, truth, true_poin
     with pytest.raises(UserFacingError, match="off its surface") as caught:
         fit_own_face(face, scan, floating)
     assert "another scan" in caught.value.remedy
+    elsewhere = clicked({key: place + np.array([1e6, 0, 0]) for key, place in true_points.items()})
+    with pytest.raises(UserFacingError, match="far off the scan's surface"):
+        fit_own_face(face, scan, elsewhere)
     with pytest.raises(UserFacingError, match="lacks needed points"):
         fit_own_face(face, scan, {})
 

@@ -137,6 +137,14 @@ def test_colours_of_vertices(tmp_path, ball):
     np.testing.assert_array_equal(read_scan(tmp_path / "scan.obj").colours, colours)
 
 
+@pytest.mark.parametrize(("words", "value"), [("red green blue", None), ("nan 1e300 -inf", [0, 255, 0])])
+def test_colours_that_are_none_do_no_harm(tmp_path, ball, words, value):
+    lines = [f"v {x} {y} {z} {words}" for x, y, z in ball.vertices] + [f"f {a} {b} {c}" for a, b, c in ball.faces + 1]
+    (tmp_path / "scan.obj").write_text("\n".join(lines))
+    colours = read_scan(tmp_path / "scan.obj").colours
+    assert (colours is None) if value is None else (colours == value).all()
+
+
 def glb_with_texture(path, ball, image: bytes):
     """A GLB file by hand, as trimesh cannot write a texture without an imaging library."""
     positions = ball.vertices.astype("<f4").tobytes()

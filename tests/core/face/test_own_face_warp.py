@@ -79,6 +79,8 @@ def test_what_cannot_be_a_head_is_one_sentence():
         place_scan({key: np.array([place[0], 0, 0]) for key, place in HEAD.items()}, HEAD)
     with pytest.raises(UserFacingError, match="one place or on one line"):
         place_scan(dict.fromkeys(HEAD, np.ones(3)), HEAD)
+    with pytest.raises(UserFacingError, match="generic face lie in one place"):
+        place_scan(HEAD, dict.fromkeys(HEAD, np.full(3, 1e8)))
     with pytest.raises(UserFacingError, match=r"lips_meet and chin are at the same place|chin and lips_meet are"):
         place_scan({**HEAD, "chin": HEAD["lips_meet"]}, HEAD)
     with pytest.raises(UserFacingError, match="nose_tip lies 10% of the scan's size off"):
