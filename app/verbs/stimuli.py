@@ -11,6 +11,8 @@ from app.terminal import note, print_json, progress_bar, warn
 from app.verbs.options import Database, Json
 from core.errors import UserFacingError
 
+_MOST_SURE = 0.999999  # beyond it the interval is everything
+
 
 def stimuli(
     out: Annotated[Path, typer.Option("--out", help="A new folder for the films, the orders and the answer sheet.")],
@@ -72,15 +74,16 @@ def stimuli_table(
     json: Json = False,
 ) -> None:
     """Print the paper's tables III to VII from the answers of a perception study, with confidence intervals."""
-    from core.evaluation.stimuli_files import read_answers
+    from core.evaluation.stimuli_files import KEY_FILE, read_answers
     from core.evaluation.stimuli_tables import answer_tables, as_csv, as_rows, as_text
     from core.media.swap_in import check_target, swapped_in
 
-    if not 0.0 < confidence < 1.0:
-        raise UserFacingError(f"The confidence {confidence:g} does not lie between 0 and 1.")
+    if not 0.0 < confidence <= _MOST_SURE:
+        raise UserFacingError(f"The confidence {confidence:g} does not lie between 0 and {_MOST_SURE}.")
     if csv is not None:
         check_target(csv)
-        if csv.exists() and csv.samefile(answers if answers.exists() else csv.parent):
+        read = (answers, answers.with_name(KEY_FILE) if key is None else key)
+        if csv.exists() and any(path.exists() and csv.samefile(path) for path in read):
             raise UserFacingError(f"'{csv}' is read and cannot be written at the same time.")
     given = read_answers(answers, key)
     tables = answer_tables(given, interval, confidence)

@@ -17,6 +17,7 @@ PAPER, ONCE = "paper", "once"
 DESIGNS = (PAPER, ONCE)
 NOT_SURE = "not sure"
 GROUPS = ("A", "B")
+MOST_PARTICIPANTS = 10_000
 _SHUFFLES = 400
 
 
@@ -77,6 +78,8 @@ class StudyPlan:
         if self.n_participants < 2 or self.n_participants % 2:
             raise UserFacingError(f"{self.n_participants} participants do not make two equal groups.",
                                   "Ask for an even number of them.")  # fmt: skip
+        if self.n_participants > MOST_PARTICIPANTS:
+            raise UserFacingError(f"A study has at most {MOST_PARTICIPANTS} participants.")
         if self.design not in DESIGNS:
             raise UserFacingError(f"There is no design '{self.design[:40]}'.", f"Choose {' or '.join(DESIGNS)}.")
 

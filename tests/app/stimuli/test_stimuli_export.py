@@ -165,6 +165,7 @@ def test_nothing_is_left_of_one_that_is_cancelled(tmp_path, database_path, sound
     ("more", "sentence"),
     [
         (("--participants", "5"), "two equal groups"),
+        (("--participants", "1000000000"), "at most 10000"),
         (("--faces", "captured", "--expressions", "neutral,anger"), "were not captured in anger"),
         (("--faces", "film"), "no face 'film'"),
         (("--expressions", "joyous"), "'joyous' is not an emotion"),
@@ -198,3 +199,34 @@ def test_a_folder_that_holds_something_is_left_alone(efase, tmp_path, database_p
     (tmp_path / "study" / "mine.txt").write_text("x")
     code, _, err = efase(*asked(tmp_path / "study", database_path, sounds))
     assert code == 2 and "is not empty" in err and [p.name for p in (tmp_path / "study").iterdir()] == ["mine.txt"]
+
+
+@pytest.fixture
+def answered(tmp_path):
+    (tmp_path / "key.csv").write_text(
+        "stimulus,file,kind,audio,text,expression,face\nS1,a.mp4,silent,one,hi,neutral,synthetic\n"
+    )
+    (tmp_path / "answers.csv").write_text("participant,group,trial,part,stimulus,answer\np1,A,1,1,S1,neutral\n")
+    return tmp_path / "answers.csv"
+
+
+@pytest.mark.parametrize("name", ["key.csv", "answers.csv"])
+def test_what_is_read_is_not_written_over(efase, answered, name):
+    target = answered.with_name(name)
+    before = target.read_text()
+    code, said, err = efase("stimuli-table", answered, "--csv", target)
+    assert (code, said) == (2, "") and "cannot be written" in err
+    assert target.read_text() == before
+
+
+@pytest.mark.parametrize("interval", ["wilson", "exact"])
+@pytest.mark.parametrize(
+    ("confidence", "code"), [("0.999999", 0), ("1e-300", 0), ("0.9999999999999999", 2), ("nan", 2)]
+)
+def test_intervals_are_numbers_or_refused(efase, answered, interval, confidence, code):
+    ended, said, err = efase("stimuli-table", answered, "--interval", interval, "--confidence", confidence, "--json")
+    assert ended == code
+    if code:
+        assert said == "" and "does not lie between" in err
+    else:
+        assert json.loads(said)["answers"] == 1
