@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.demo import open_named
+from core.errors import UserFacingError
 from core.iface.default_model import keep_default_model
-from core.iface.model_file import save_model
+from core.iface.model_file import MODEL_SUFFIX, save_model
 from core.iface.paper_face import PaperFace
 from core.iface.training import check_variant, train_face
 from core.media.swap_in import check_target
@@ -29,6 +30,10 @@ def run(job: TrainingJob, progress: Progress = SILENT) -> dict[str, object]:
     """Do the job and return the object of ``--json``; raises `UserFacingError` for what cannot be learnt from."""
     check_variant(job.variant)
     if job.output is not None:
+        if job.output.suffix.lower() != MODEL_SUFFIX:  # a slip of the pen must not cost the database
+            raise UserFacingError(
+                f"'{job.output}' is not a name for a speaking face.", f"Let it end in {MODEL_SUFFIX}."
+            )
         check_target(job.output)
     database = open_named(job.database, progress.part(0.0, 0.1))
     began = time.perf_counter()

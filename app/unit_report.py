@@ -115,6 +115,8 @@ def _check(job: UnitsJob, outputs: list[Path]) -> None:
         if path.suffix.lower() != ".png":
             raise UserFacingError(f"'{path}' is no .png, as which pictures are written.")
         check_target(path)
+    if len(outputs) != len({path.resolve() for path in outputs}):
+        raise UserFacingError(f"'{outputs[0]}' was named for both pictures.")
 
 
 def _keyframes(

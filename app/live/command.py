@@ -111,6 +111,7 @@ def run(job: LiveJob, ready: Ready, progress: Progress = SILENT) -> dict[str, ob
     session.ask(emotion_named(job.emotion), job.intensity)
     session.send_to(ready.outgoing)
     warnings: list[str] = []
+    killed: SystemExit | None = None
     began_s = time.perf_counter()
     session.start(ready.source, records=job.project is not None)
     try:
@@ -132,6 +133,8 @@ def run(job: LiveJob, ready: Ready, progress: Progress = SILENT) -> dict[str, ob
             session.start(Microphone(named_device(job.device)))
     except KeyboardInterrupt:
         pass  # the way to end a session
+    except SystemExit as ended:  # a polite kill or a closed terminal costs nobody what was recorded
+        killed = ended
     finally:
         session.stop()
         figures = session.figures()
@@ -141,6 +144,8 @@ def run(job: LiveJob, ready: Ready, progress: Progress = SILENT) -> dict[str, ob
     if take is not None:
         warnings += save_take(take, job.project, ready.database, progress=progress)
         outputs.append(str(job.project))
+    if killed is not None:
+        raise killed
     return {"source": ready.source.name, "rate_hz": ready.source.rate_hz, **figures, "warnings": warnings,
             "outputs": outputs}  # fmt: skip
 

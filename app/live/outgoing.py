@@ -93,6 +93,7 @@ class Outgoing:
 
 def _frame_of_day() -> int:
     """The frame that it is now, counted from midnight."""
-    now = time.localtime()
+    now_s = time.time()
+    now = time.localtime(now_s)
     second = (now.tm_hour * 60 + now.tm_min) * 60 + now.tm_sec
-    return second * RATE_HZ + int(time.time() % 1.0 * RATE_HZ)
+    return second * RATE_HZ + int(now_s % 1.0 * RATE_HZ)

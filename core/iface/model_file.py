@@ -22,6 +22,7 @@ from core.iface.unit_face import UnitFace
 from core.media.swap_in import swapped_in
 
 FORMAT, VERSION = "efase-iface", 1
+MODEL_SUFFIX = ".npz"
 MODERN, PAPER = "modern", "paper"
 VARIANTS = (MODERN, PAPER)
 _ANEW = "Train it anew with `efase train iface`."

@@ -91,6 +91,9 @@ def test_what_cannot_be_trained_or_used_is_told_in_a_sentence(
     assert code == 2 and "none" in err
     code, _, err = efase("train", "iface", "--db", database_path, "-o", target)
     assert code == 2 and "keeps no sound" in err and not target.exists()
+    before = audible_path.read_bytes()
+    code, _, err = efase("train", "iface", "--db", audible_path, "-o", audible_path)
+    assert code == 2 and "end in .npz" in err and audible_path.read_bytes() == before
     target.write_text("no face")
     for engine, told in (("iface", "no file of a speaking face"), ("animeme", "takes no trained face")):
         code, _, err = efase(

@@ -52,6 +52,7 @@ def test_a_figure_is_drawn_of_a_database_that_is_named(efase, tmp_path):
         (("--keyframes", "guessed"), "captured or drawn"),
         (("--picture", "figure.jpg"), "is no .png"),
         (("--face", "nobody"), "no character 'nobody'"),
+        (("--picture", "figure.png", "--units-picture", "./figure.png"), "named for both pictures"),
     ],
 )
 def test_what_cannot_be_is_one_sentence(efase, words, sentence):

@@ -72,6 +72,17 @@ def test_a_file_is_spoken_sent_and_kept(efase, sound_path, tmp_path):
     assert audio.rate_hz == 16_000 and len(audio.samples) == 9600 and content.engine == "iface"
 
 
+def test_a_polite_kill_keeps_what_was_recorded(efase, sound_path, tmp_path, monkeypatch):
+    def killed(session):
+        if session.n_frames > 5:
+            raise SystemExit(143)
+
+    monkeypatch.setattr(command, "_tell", killed)
+    code, out, err = efase("live", "--file", sound_path, "--record", tmp_path / "kept.efase", "--json")
+    assert (code, out) == (143, ""), err
+    assert read_project(tmp_path / "kept.efase")[1].duration_s > 0.1
+
+
 def test_it_ends_when_the_time_is_up_and_says_so_in_words(efase, sound_path):
     code, out, _ = efase("live", "--file", sound_path, "--seconds", 0.3)
     assert code == 0 and "frames from" in out and "look-ahead" in out and "drop-outs 0" in out
