@@ -10,7 +10,7 @@ DEFAULT_DEVICE = "the default microphone"
 NO_SOUND_SYSTEM = "The sound system of this machine tells of no devices."
 NO_SOUND_SYSTEM_REMEDY = "Install PortAudio (Debian: libportaudio2), start the sound server, or play a file."
 DEVICE_LOST = "{device} is gone."
-DEVICE_LOST_REMEDY = "Plug it in again or choose another, and press Listen."
+DEVICE_LOST_REMEDY = "Plug it in again or choose another, and listen again."
 DEVICE_REFUSED = "{device} cannot be opened: {why}."
 
 LISTEN_TO = "LISTEN TO"
