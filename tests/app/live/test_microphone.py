@@ -51,7 +51,7 @@ def test_a_device_that_vanishes_is_said_in_one_sentence_and_another_start_is_tri
     assert session.level.rms_db == -90.0 and session.level.silent_s > 0.3  # nothing plays
     server.kill()
     until(lambda: ends)
-    assert ends[0].message == f"{default.name} is gone." and "press Listen" in ends[0].remedy
+    assert ends[0].message == f"{default.name} is gone." and "listen again" in ends[0].remedy
     assert not session.is_running
     session.start(Microphone(default))  # the server is still away: a sentence again, no hang
     until(lambda: len(ends) == 2)
