@@ -20,7 +20,7 @@ from core.iface.unit_face import UnitFace
 from core.motion.database import MotionDatabase
 from core.progress import SILENT, Progress
 
-_TRAINING = 1  # raise it when training changes beyond its settings, so that cached faces are not taken for new ones
+_TRAINING = 2  # raise it when training changes beyond its settings, so that cached faces are not taken for new ones
 _LOOK_EVERY_S = 0.2
 log = logging.getLogger("iface")
 

@@ -11,6 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from core.iface.ear import shares
 from core.iface.perceptrons import Perceptron
 from core.progress import SILENT, Progress
 
@@ -40,8 +41,9 @@ Layers = list[np.ndarray]  # weights and offsets of the layers in turn
 def descend(
     inputs: Callable[[np.random.Generator], np.ndarray], wanted: np.ndarray, told: np.ndarray,
     hidden: Sequence[int], settings: DescentSettings, seed: int, progress: Progress = SILENT,
+    as_shares: bool = False,
 ) -> Perceptron:  # fmt: skip
-    """Train a perceptron of ReLU layers by squared error.
+    """Train a perceptron of ReLU layers by squared error; see `gradient` for ``as_shares``.
 
     inputs : called once a pass; float32, shape (n_samples, n_in), of the order of 1
     wanted, told : float32, shape (n_samples, n_out), and which of it counts (1 or 0)
@@ -58,7 +60,7 @@ def descend(
         for first in range(0, len(order), settings.batch):
             rows = order[first : first + settings.batch]
             noise = rng.standard_normal((len(rows), heard.shape[1]), dtype=np.float32) * np.float32(settings.noise)
-            slopes = gradient(layers, heard[rows] + noise, wanted[rows], told[rows])
+            slopes = gradient(layers, heard[rows] + noise, wanted[rows], told[rows], as_shares)
             step, t = settings.step * 0.5 * (1.0 + np.cos(np.pi * t / n_steps)), t + 1
             upright = np.sqrt(1.0 - _SQUARE_DECAY**t) / (1.0 - _MEAN_DECAY**t)
             for layer, slope, mean, square in zip(layers, slopes, means, squares):
@@ -80,12 +82,18 @@ def started(sizes: Sequence[int], rng: np.random.Generator) -> Layers:
     return layers
 
 
-def gradient(layers: Layers, inputs: np.ndarray, wanted: np.ndarray, told: np.ndarray) -> Layers:
-    """Return the slope of the mean over samples of ``Σ told (output - wanted)²`` by each weight and offset."""
+def gradient(
+    layers: Layers, inputs: np.ndarray, wanted: np.ndarray, told: np.ndarray, as_shares: bool = False
+) -> Layers:
+    """Return the slope of the mean over samples of ``Σ told (output - wanted)²`` by each weight and offset.
+
+    as_shares : outputs are logarithms of shares, and the slope is that of ``-2 Σ wanted log(share)`` where all is told
+    """
     values = [inputs]
     for weights, offsets in zip(layers[:-2:2], layers[1:-2:2]):
         values.append(np.maximum(values[-1] @ weights + offsets, 0.0))
-    pulled = (values[-1] @ layers[-2] + layers[-1] - wanted) * told * (values[0].dtype.type(2.0) / len(inputs))
+    given = values[-1] @ layers[-2] + layers[-1]
+    pulled = ((shares(given) if as_shares else given) - wanted) * told * (values[0].dtype.type(2.0) / len(inputs))
     slopes: Layers = []
     for i in range(len(values) - 1, -1, -1):
         slopes = [values[i].T @ pulled, pulled.sum(axis=0), *slopes]

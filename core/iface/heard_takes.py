@@ -24,7 +24,7 @@ from core.speech.transcript import Transcript
 class HeardTake:
     """One sentence at 30 Hz; frame f stands at f / 30 seconds.
 
-    features : float32, shape (n_frames, 10), see `core.iface.speech_features`
+    features : float32, shape (n_frames, 70), see `core.iface.speech_features`
     displacements : float32, shape (n_frames, n_markers, 3), mm from the neutral pose, head space
     used : bool, shape (n_frames,); False for what is heard around the others, and neither learned nor measured
     in_noise : features of the same sound in noise, one array a noise; see `core.iface.noisy_hearing`

@@ -10,6 +10,7 @@ import numpy as np
 from core.errors import UserFacingError
 from core.iface.heard_takes import HeardTake
 from core.iface.motion_unit import NEUTRAL, MotionUnits
+from core.iface.speech_features import N_CEPSTRA
 from core.iface.unit_face import windows
 from core.speech.emotion import EMOTIONS
 
@@ -39,13 +40,18 @@ def units_of(takes: Sequence[HeardTake], n_utterance: int | float, n_expression:
 
 
 def silence_of(takes: Sequence[HeardTake]) -> np.ndarray:
-    """Return the mean features of the quietest frames, float32, shape (10,); the first cepstrum is the log energy."""
+    """Return the mean features of the quietest frames, float32, shape (70,); the first cepstrum is the log energy."""
     heard = np.concatenate([take.features for take in takes])
     return heard[heard[:, 0] <= np.quantile(heard[:, 0], _QUIETEST)].mean(axis=0).astype(np.float32)
 
 
+def averaged(takes: Sequence[HeardTake]) -> list[HeardTake]:
+    """Return ``takes`` with the first ten features only, the cepstra that the paper's face hears."""
+    return [replace(take, features=take.features[:, :N_CEPSTRA]) for take in takes]
+
+
 def heard_windows(takes: Sequence[HeardTake], n_back: int, n_ahead: int, silence: np.ndarray) -> np.ndarray:
-    """Return what is heard around each used frame, float32, shape (n_used, (n_back + 1 + n_ahead) · 10)."""
+    """Return what is heard around each used frame, float32, shape (n_used, (n_back + 1 + n_ahead) · n_features)."""
     before, after = np.broadcast_to(silence, (n_back, len(silence))), np.broadcast_to(silence, (n_ahead, len(silence)))
     laid = (windows(np.concatenate([before, t.features, after]), len(t))[t.used] for t in takes)
     return np.concatenate(list(laid)).astype(np.float32)

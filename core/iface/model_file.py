@@ -12,16 +12,17 @@ import numpy as np
 from core.errors import UserFacingError
 from core.face.face_file import UNREADABLE, read_arrays
 from core.iface.classes import SpeechClasses
-from core.iface.modern_face import ModernFace
+from core.iface.ear import FRAMES_AROUND, N_EAR_INPUTS
+from core.iface.modern_face import ModernFace, n_told
 from core.iface.motion_unit import MotionUnits, MotionUnitSet
 from core.iface.paper_face import PaperFace
 from core.iface.perceptrons import ACTIVATIONS, Perceptron
 from core.iface.speaking import MOST_AHEAD
-from core.iface.speech_features import N_CEPSTRA
+from core.iface.speech_features import N_CEPSTRA, N_FEATURES
 from core.iface.unit_face import UnitFace
 from core.media.swap_in import swapped_in
 
-FORMAT, VERSION = "efase-iface", 1
+FORMAT, VERSION = "efase-iface", 2
 MODEL_SUFFIX = ".npz"
 MODERN, PAPER = "modern", "paper"
 VARIANTS = (MODERN, PAPER)
@@ -91,7 +92,7 @@ def load_model(path: Path) -> FaceModel:
 def _perceptrons(face: UnitFace) -> Mapping[str, tuple[Perceptron, ...]]:
     if isinstance(face, PaperFace):
         return {"spoken": face.spoken, "expressive": face.expressive}
-    return {"nets": face.nets}
+    return {"ears": face.ears, "nets": face.nets}
 
 
 def _read(head: dict, arrays: dict[str, np.ndarray]) -> FaceModel:
@@ -101,24 +102,28 @@ def _read(head: dict, arrays: dict[str, np.ndarray]) -> FaceModel:
     neutral, silence = (arrays[name].astype(np.float32) for name in ("neutral", "silence"))
     n_axes, (n_back, n_ahead) = int(head["axes"]), (int(n) for n in head["window"])
     _must(0 < len(markers) == len(set(markers)) and neutral.shape == (len(markers), n_axes))
-    _must(silence.shape == (N_CEPSTRA,) and len(set(expressions)) == len(expressions))
+    _must(silence.shape == (N_FEATURES,) and len(set(expressions)) == len(expressions))
     _must(0 <= n_back <= _MOST_BACK and 0 <= n_ahead <= MOST_AHEAD)
     sets = [_unit_set(arrays, k, neutral.size) for k in range(1 + len(expressions))]
     units = MotionUnits(sets[0], dict(zip(expressions, sets[1:])), len(markers), n_axes)
     shared = (units, neutral, silence, n_back, n_ahead)
-    n_heard, n_spoken = (n_back + 1 + n_ahead) * N_CEPSTRA, len(sets[0].units)
+    n_window, n_spoken = n_back + 1 + n_ahead, len(sets[0].units)
     n_shown = [n_spoken + len(unit_set.units) for unit_set in sets[1:]]
     variant = str(head["variant"])
     if variant == PAPER:
         classes = _classes(tuple(map(str, head["phones"])), arrays)
         _must(len(head["spoken"]) == len(classes.phones) and len(head["expressive"]) == len(expressions))
-        spoken = _read_perceptrons(head, arrays, "spoken", [(n_heard, n_spoken)] * len(classes.phones))
+        spoken = _read_perceptrons(head, arrays, "spoken", [(n_window * N_CEPSTRA, n_spoken)] * len(classes.phones))
         expressive = _read_perceptrons(head, arrays, "expressive", [(n_spoken, n) for n in n_shown])
         face: UnitFace = PaperFace(*shared, classes, spoken, expressive)
     else:
-        _must(variant == MODERN and 0 < len(head["nets"]) <= _MOST_NETS)
-        sizes = [(n_heard, n_spoken + sum(n_shown))] * len(head["nets"])
-        face = ModernFace(*shared, _read_perceptrons(head, arrays, "nets", sizes))
+        _must(variant == MODERN and min(n_back, n_ahead) >= FRAMES_AROUND)
+        _must(all(0 < len(head[kind]) <= _MOST_NETS for kind in ("ears", "nets")))
+        (_, n_layers), *_ = head["ears"]
+        n_phones = len(arrays[f"ears0_offsets{int(n_layers) - 1}"])
+        ears = _read_perceptrons(head, arrays, "ears", [(N_EAR_INPUTS, n_phones)] * len(head["ears"]))
+        sizes = [(n_told(n_window, n_phones), n_spoken + sum(n_shown))] * len(head["nets"])
+        face = ModernFace(*shared, ears, _read_perceptrons(head, arrays, "nets", sizes))
     return FaceModel(face, variant, markers, str(head["database"]), str(head["content_hash"]), int(head["seed"]))
 
 

@@ -1,4 +1,4 @@
-"""Training of the modern face: the same features, more of them, louder and softer, and in noise."""
+"""Training of the modern face: first which phones are heard, louder and softer and in noise, then how they move it."""
 
 from __future__ import annotations
 
@@ -8,36 +8,50 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from core.iface.descent import DescentSettings, descend
+from core.iface.ear import FRAMES_AROUND
+from core.iface.ear_training import train_ears
 from core.iface.heard_takes import HeardTake
-from core.iface.lessons import heard_in_noise, heard_windows, shown_parameters, silence_of, units_of, usable_takes
-from core.iface.modern_face import ModernFace
+from core.iface.lessons import shown_parameters, silence_of, units_of, usable_takes
+from core.iface.modern_face import ModernFace, told
 from core.iface.motion_unit import NEUTRAL, MotionUnits
+from core.iface.perceptrons import Perceptron
+from core.iface.speech_features import N_CEPSTRA
+from core.iface.varied_speech import VariedSpeech
 from core.motion.marker_set import MarkerSet
 from core.progress import SILENT, Progress
+from core.speech.phoneme import PHONEMES
 
 
 @dataclass(frozen=True)
 class ModernSettings:
     """What was chosen on held-out sentences (see `docs/iface.md`).
 
-    n_back, n_ahead : frames of the window; hidden : units of the two layers
-    n_nets : perceptrons that are averaged
+    n_back, n_ahead : frames of the window
+    n_ears, ear_hidden, ear : perceptrons that tell phones and are averaged, units of their layers, how they are trained
+    n_nets, hidden, descent : the same of those that move the face
+    cepstra_weight : what the ten cepstra of a frame count beside the phones
     lip_weight : an error of the lip gap counts as much as this times the same length of any other deformation
-    loudness : standard deviation of the loudness that each sentence is given anew in each pass, nepers of energy
+    loudness : standard deviation of the loudness that each sentence is given anew, nepers of energy
     noise_share : of the sentences that are heard in noise, where their takes have it
+    n_hearings : how often all sentences are heard anew to learn moving from
     n_utterance, n_expression : motion units, a share of the variance each
     """
 
-    n_back: int = 3
+    n_back: int = 6
     n_ahead: int = 3
-    hidden: tuple[int, ...] = (128, 64)
+    n_ears: int = 3
+    ear_hidden: tuple[int, ...] = (256, 256)
+    ear: DescentSettings = field(default_factory=lambda: DescentSettings(8, step=2e-3, noise=1.0))
     n_nets: int = 4
+    hidden: tuple[int, ...] = (256, 128)
+    descent: DescentSettings = field(default_factory=lambda: DescentSettings(20, step=2e-3, batch=128, noise=0.1))
+    cepstra_weight: float = 0.15
     lip_weight: float = 4.0
     loudness: float = 1.5
     noise_share: float = 0.3
+    n_hearings: int = 4
     n_utterance: float = 0.98
     n_expression: float = 0.9
-    descent: DescentSettings = field(default_factory=DescentSettings)
 
 
 def train_modern_face(
@@ -53,52 +67,49 @@ def train_modern_face(
     settings, takes = settings or ModernSettings(), usable_takes(takes)
     progress.step(0.0, "motion units")
     units, silence = units_of(takes, settings.n_utterance, settings.n_expression), silence_of(takes)
-    hearing = _Hearing(takes, settings, silence)
-    rest, mixing, wanted, told = _lesson(takes, units, markers, settings.lip_weight)
-    nets = []
-    for n in range(settings.n_nets):
-        stage = progress.part(0.05 + 0.95 * n / settings.n_nets, 0.05 + 0.95 * (n + 1) / settings.n_nets)
-        stage.step(0.0, f"perceptron {n + 1} of {settings.n_nets}")
-        with threadpool_limits(1):  # batches are too small to share out, and the sums of one thread are always the same
-            net = descend(hearing, wanted, told, settings.hidden, settings.descent, seed * settings.n_nets + n, stage)
-        nets.append(net.taking(hearing.mean, hearing.scale).giving(rest, mixing))
+    around = settings.n_back, settings.n_ahead
+    speech = VariedSpeech(takes, *around, silence, settings.loudness, settings.noise_share)
+    with threadpool_limits(1):  # batches are too small to share out, and the sums of one thread are always the same
+        half = progress.part(0.05, 0.5)
+        ears = train_ears(speech, settings.n_ears, settings.ear_hidden, settings.ear, seed, half)
+        lesson = _lesson(takes, units, markers, settings.lip_weight)
+        nets = _train_nets(speech, ears, lesson, settings, seed, progress.part(0.5, 1.0))
     progress.step(1.0, "trained")
     neutral = markers.rest.astype(np.float32)
-    return ModernFace(units, neutral, silence, settings.n_back, settings.n_ahead, tuple(nets))
+    return ModernFace(units, neutral, silence, *around, ears, nets)
 
 
-class _Hearing:
-    """The windows of all used frames, heard anew in each pass: louder or softer, with noise or without."""
+def _train_nets(
+    speech: VariedSpeech, ears: tuple[Perceptron, ...], lesson: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray],
+    settings: ModernSettings, seed: int, progress: Progress,
+) -> tuple[Perceptron, ...]:  # fmt: skip
+    """Train on what the ears tell of the used frames, in a few hearings that each sentence is drawn from anew."""
+    rest, mixing, wanted, told_of = lesson
+    rng = np.random.default_rng(seed)
+    hearings = []
+    for h in range(settings.n_hearings):
+        progress.step(0.2 * h / settings.n_hearings, "listening")
+        hearings.append([
+            told(ears, context, len(take))[take.used] for take, context in zip(speech.takes, speech.contexts(rng))
+        ])  # fmt: skip
+    n_cepstra = settings.n_back + 1 + settings.n_ahead - FRAMES_AROUND
+    n_phones = (n_cepstra - FRAMES_AROUND) * len(PHONEMES)
+    cepstra = np.concatenate([take.features[take.used, :N_CEPSTRA] for take in speech.takes])
+    mean = np.concatenate([np.zeros(n_phones), np.tile(cepstra.mean(axis=0, dtype=float), n_cepstra)])
+    spread = cepstra.std(axis=0, dtype=float).clip(1e-6) / settings.cepstra_weight
+    scale = np.concatenate([np.ones(n_phones), np.tile(spread, n_cepstra)])
 
-    def __init__(self, takes: Sequence[HeardTake], settings: ModernSettings, silence: np.ndarray) -> None:
-        n_noisy = min(len(take.in_noise) for take in takes)
-        n_window = settings.n_back + 1 + settings.n_ahead
-        quiet = heard_windows(takes, settings.n_back, settings.n_ahead, silence)
-        used = np.concatenate([take.features[take.used] for take in takes])
-        mean, scale = used.mean(axis=0, dtype=float), used.std(axis=0, dtype=float).clip(1e-6)
-        self.mean, self.scale = np.tile(mean, n_window), np.tile(scale, n_window)
-        self._heard = [self._standard(quiet)]
-        for i in range(n_noisy):
-            noisy = [heard_in_noise(take, i) for take in takes]
-            self._heard.append(
-                self._standard(heard_windows(noisy, settings.n_back, settings.n_ahead, silence_of(noisy)))
-            )
-        self._n_frames = [int(take.used.sum()) for take in takes]
-        self._loudness = settings.loudness / scale[0]
-        self._chances = np.full(1 + n_noisy, settings.noise_share / max(1, n_noisy))
-        self._chances[0] = 1.0 - settings.noise_share if n_noisy else 1.0
+    def heard(rng: np.random.Generator) -> np.ndarray:
+        which = rng.integers(len(hearings), size=len(speech.takes))
+        return ((np.concatenate([hearings[w][t] for t, w in enumerate(which)]) - mean) / scale).astype(np.float32)
 
-    def __call__(self, rng: np.random.Generator) -> np.ndarray:
-        """Return the windows of one pass, standardised, float32."""
-        which = rng.choice(len(self._heard), len(self._n_frames), p=self._chances)
-        stops = np.cumsum(self._n_frames)
-        heard = np.concatenate([self._heard[w][b - n : b] for w, n, b in zip(which, self._n_frames, stops)])
-        louder = rng.normal(0.0, self._loudness, len(self._n_frames)).astype(np.float32)
-        heard[:, ::10] += np.repeat(louder, self._n_frames)[:, None]
-        return heard
-
-    def _standard(self, heard: np.ndarray) -> np.ndarray:
-        return ((heard - self.mean) / self.scale).astype(np.float32)
+    nets = []
+    for n in range(settings.n_nets):
+        stage = progress.part(0.2 + 0.8 * n / settings.n_nets, 0.2 + 0.8 * (n + 1) / settings.n_nets)
+        stage.step(0.0, f"perceptron {n + 1} of {settings.n_nets}")
+        net = descend(heard, wanted, told_of, settings.hidden, settings.descent, seed * settings.n_nets + n, stage)
+        nets.append(net.taking(mean, scale).giving(rest, mixing))
+    return tuple(nets)
 
 
 def _lesson(

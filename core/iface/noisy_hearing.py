@@ -21,6 +21,6 @@ def in_noise(audio: Audio, rng: np.random.Generator) -> Audio:
 
 
 def heard_in_noises(audio: Audio, n_frames: int, n_noises: int, seed: int) -> tuple[np.ndarray, ...]:
-    """Return the features of ``audio`` in ``n_noises`` noises, each float32, shape (n_frames, 10)."""
+    """Return the features of ``audio`` in ``n_noises`` noises, each float32, shape (n_frames, 70)."""
     rng = np.random.default_rng(seed)
     return tuple(speech_features(in_noise(audio, rng), n_frames) for _ in range(n_noises))

@@ -8,6 +8,7 @@ import numpy as np
 
 from core.iface.classes import SpeechClasses
 from core.iface.perceptrons import Perceptron
+from core.iface.speech_features import N_CEPSTRA
 from core.iface.unit_face import UnitFace, windows
 
 
@@ -26,7 +27,7 @@ class PaperFace(UnitFace):
 
     def parameters(self, context: np.ndarray) -> tuple[np.ndarray, ...]:
         """See `UnitFace.parameters`."""
-        n_frames = len(context) - self.n_back - self.n_ahead
+        context, n_frames = context[:, :N_CEPSTRA], len(context) - self.n_back - self.n_ahead
         heard = windows(context, n_frames)
         utterance = self.utterance(heard, context[self.n_back : self.n_back + n_frames])
         return utterance, *(perceptron(utterance) for perceptron in self.expressive)

@@ -10,10 +10,11 @@ import numpy as np
 
 from core.iface.classes import fit_classes, spoken_phones
 from core.iface.heard_takes import HeardTake
-from core.iface.lessons import heard_windows, shown_parameters, silence_of, units_of, usable_takes
+from core.iface.lessons import averaged, heard_windows, shown_parameters, silence_of, units_of, usable_takes
 from core.iface.motion_unit import NEUTRAL, PAPER_UTTERANCE
 from core.iface.paper_face import PaperFace
 from core.iface.perceptrons import Perceptron
+from core.iface.speech_features import N_CEPSTRA
 from core.progress import SILENT, Progress
 
 BACK = AHEAD = 3
@@ -47,7 +48,8 @@ def train_paper_face(
     """
     settings, takes = settings or PaperSettings(), usable_takes(takes)
     progress.step(0.0, "motion units")
-    units, silence = units_of(takes, PAPER_UTTERANCE, 2), silence_of(takes)
+    units, surroundings = units_of(takes, PAPER_UTTERANCE, 2), silence_of(takes)
+    silence, takes = surroundings[:N_CEPSTRA], averaged(takes)
     said = {e: [take for take in takes if take.emotion == e] for e in (NEUTRAL, *units.expressions)}
     progress.step(0.05, "classes of sound")
     features = np.concatenate([take.features[take.used] for take in said[NEUTRAL]])
@@ -63,7 +65,7 @@ def train_paper_face(
         n_hidden = round(_FEWEST_HIDDEN + (_MOST_HIDDEN - _FEWEST_HIDDEN) * share)
         mine = best == c
         spoken.append(_perceptron(heard[mine], wanted[mine], n_hidden, settings.decay, settings.n_steps, seed))
-    face = PaperFace(units, np.asarray(neutral, np.float32), silence, BACK, AHEAD, classes, tuple(spoken), ())
+    face = PaperFace(units, np.asarray(neutral, np.float32), surroundings, BACK, AHEAD, classes, tuple(spoken), ())
     expressive = []
     for k, expression in enumerate(units.expressions):
         progress.step(0.8 + 0.2 * k / len(units.expressions), f"perceptron of {expression}")
@@ -76,7 +78,7 @@ def train_paper_face(
             _perceptron(estimated, wanted, _EXPRESSION_HIDDEN, settings.expression_decay, settings.n_steps, seed)
         )
     progress.step(1.0, "trained")
-    return PaperFace(units, face.neutral, silence, BACK, AHEAD, classes, face.spoken, tuple(expressive))
+    return PaperFace(units, face.neutral, surroundings, BACK, AHEAD, classes, face.spoken, tuple(expressive))
 
 
 def _perceptron(

@@ -17,7 +17,7 @@ class FaceStream(Protocol):
     """The same face as it listens: frames come as soon as what lies ahead of them is heard."""
 
     def accept(self, features: np.ndarray, strengths: Strengths) -> np.ndarray:
-        """Take the next features, shape (n, 10); return the frames that are due, float32, (m, n_markers, 3), mm.
+        """Take the next features, shape (n, 70); return the frames that are due, float32, (m, n_markers, 3), mm.
 
         strengths : of the frames that are returned, one number an expression
 
@@ -43,7 +43,7 @@ class SpeakingFace(Protocol):
     def motion(self, features: np.ndarray, strengths: Strengths) -> np.ndarray:
         """Return marker positions at 30 Hz, float32, shape (n_frames, n_markers, 3), mm, head space.
 
-        features : shape (n_frames, 10)
+        features : shape (n_frames, 70)
         strengths : 0..1, one number or shape (n_frames,) an expression; deformations mix as
             ``d = (1 - Σ α_k) d_0 + Σ α_k d_k``, each d_k by equation 2 at full strength
 

@@ -12,7 +12,7 @@ import numpy as np
 from core.errors import UserFacingError
 from core.iface.motion_unit import NEUTRAL, MotionUnits
 from core.iface.speaking import Strengths
-from core.iface.speech_features import N_CEPSTRA
+from core.iface.speech_features import N_FEATURES
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,7 +21,7 @@ class UnitFace(ABC):
 
     units : of the database that it was trained on
     neutral : float32, shape (n_markers, 3), mm, s_0
-    silence : float32, shape (10,), the features of silence, which is heard before the start and after the end
+    silence : float32, shape (70,), the features of silence, which is heard before the start and after the end
     n_back, n_ahead : frames that are heard before and after the one that is shown
     """
 
@@ -35,7 +35,7 @@ class UnitFace(ABC):
     def parameters(self, context: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return the MUPs of every frame, float32, (n, n_parameters), for neutral and then for each expression.
 
-        context : float32, shape (n_back + n + n_ahead, 10)
+        context : float32, shape (n_back + n + n_ahead, 70)
         """
 
     @property
@@ -74,7 +74,7 @@ class UnitFace(ABC):
         return [(mean.astype(np.float32), units.astype(np.float32)) for mean, units in states]
 
     def _silent(self, n_frames: int) -> np.ndarray:
-        return np.broadcast_to(self.silence, (n_frames, N_CEPSTRA))
+        return np.broadcast_to(self.silence, (n_frames, N_FEATURES))
 
     def _shares(self, strengths: Strengths, n_frames: int) -> np.ndarray:
         """Strengths within 0..1, brought down to a sum of 1, and what they leave to neutral."""
@@ -117,13 +117,13 @@ class UnitFaceStream:
 
 
 def windows(context: np.ndarray, n_frames: int) -> np.ndarray:
-    """Lay the features around each frame side by side, oldest first; shape (n_frames, n_window · 10)."""
+    """Lay the features around each frame side by side, oldest first; shape (n_frames, n_window · n_features)."""
     n_window = len(context) - n_frames + 1
     return np.concatenate([context[i : i + n_frames] for i in range(n_window)], axis=1)
 
 
 def _checked(features: np.ndarray) -> np.ndarray:
     features = np.asarray(features, np.float32)
-    if features.ndim != 2 or features.shape[1] != N_CEPSTRA:
-        raise ValueError(f"features of shape {features.shape}, not (n, {N_CEPSTRA})")
+    if features.ndim != 2 or features.shape[1] != N_FEATURES:
+        raise ValueError(f"features of shape {features.shape}, not (n, {N_FEATURES})")
     return features

@@ -10,6 +10,7 @@ import soundfile
 
 from core.iface import modern_training, paper_training
 from core.iface.model_file import load_model
+from core.iface.speech_features import N_FEATURES
 from core.motion.build import BuildSettings, build_database
 from core.motion.motion_files import read_motion
 from core.motion.recording import Recording
@@ -48,7 +49,7 @@ def test_a_face_is_trained_written_and_told_and_the_same_seed_gives_the_same(efa
         faces.append(load_model(tmp_path / name).face)
     assert answer["variant"] == variant and answer["seed"] == 3 and answer["look_ahead_ms"] == 100.0
     assert (answer["classes"] is None) == (variant == "modern")
-    heard = np.random.default_rng(0).normal(size=(20, 10))
+    heard = np.random.default_rng(0).normal(size=(20, N_FEATURES))
     assert (faces[0].motion(heard, {}) == faces[1].motion(heard, {})).all()
     code, out, _ = efase(*words)
     assert code == 0 and f"the {variant} face of" in out and "cache" in out

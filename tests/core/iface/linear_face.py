@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.iface.speech_features import N_CEPSTRA
+from core.iface.speech_features import N_CEPSTRA, N_FEATURES
 
 
 class LinearFace:
@@ -18,7 +18,7 @@ class LinearFace:
         self.shapes = {name: rng.normal(size=self.neutral.shape) for name in expressions}
 
     def motion(self, features, strengths):
-        n = len(features)
+        n, features = len(features), np.asarray(features)[:, :N_CEPSTRA]
         padded = np.concatenate([np.zeros((1, N_CEPSTRA)), features, np.zeros((self.n_ahead, N_CEPSTRA))])
         moved = sum(padded[tap : tap + n] @ self.taps[tap] for tap in range(len(self.taps)))
         moved = moved.reshape(n, *self.neutral.shape)
@@ -44,5 +44,5 @@ class _Stream:
 
     def _due(self, stop):
         first, self._n_given = self._n_given, max(stop, self._n_given)
-        whole = self._face.motion(np.array(self._heard).reshape(-1, N_CEPSTRA), self._last)
+        whole = self._face.motion(np.array(self._heard).reshape(-1, N_FEATURES), self._last)
         return whole[first : self._n_given]

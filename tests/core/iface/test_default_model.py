@@ -15,6 +15,7 @@ from core.errors import UserFacingError
 from core.iface import default_model as module
 from core.iface.default_model import default_model
 from core.iface.model_file import FaceModel
+from core.iface.speech_features import N_FEATURES
 from core.progress import Cancelled, Progress
 from tests.core.evaluation.conftest import mouth_corpus, mouth_database  # noqa: F401
 
@@ -41,7 +42,7 @@ def _files(tmp_path):
 
 
 def test_it_is_trained_once_and_anew_when_the_database_holds_something_else(trained, loud_database, tmp_path):
-    heard = np.ones((5, 10))
+    heard = np.ones((5, N_FEATURES))
     first, again = default_model(loud_database), default_model(loud_database)
     assert len(trained) == 1 and (first.motion(heard, {}) == again.motion(heard, {})).all()
     (kept,) = _files(tmp_path)

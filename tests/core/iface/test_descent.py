@@ -34,6 +34,27 @@ def test_slopes_are_those_of_finite_differences():
             assert slope[place] == pytest.approx((losses[0] - losses[1]) / (2 * h), abs=1e-6)
 
 
+def test_slopes_of_shares_are_those_of_cross_entropy():
+    rng = np.random.default_rng(3)
+    layers = [layer.astype(float) for layer in started((4, 6, 3), rng)]
+    inputs, wanted = rng.normal(size=(7, 4)), np.eye(3)[rng.integers(3, size=7)]
+
+    def loss():
+        outputs = np.maximum(inputs @ layers[0] + layers[1], 0.0) @ layers[2] + layers[3]
+        return -2.0 * (wanted * (outputs - np.log(np.exp(outputs).sum(axis=1, keepdims=True)))).sum() / len(inputs)
+
+    slopes = gradient(layers, inputs, wanted, np.ones((7, 3)), as_shares=True)
+    for layer, slope in zip(layers, slopes):
+        for place in np.ndindex(layer.shape):
+            kept, h = layer[place], 1e-6
+            layer[place] = kept + h
+            above = loss()
+            layer[place] = kept - h
+            below = loss()
+            layer[place] = kept
+            assert slope[place] == pytest.approx((above - below) / (2 * h), abs=1e-6)
+
+
 def test_outputs_that_a_sample_does_not_tell_of_are_learned_from_the_others():
     rng = np.random.default_rng(1)
     inputs = rng.normal(size=(600, 3)).astype(np.float32)

@@ -9,6 +9,7 @@ import pytest
 
 from core.errors import UserFacingError
 from core.iface.model_file import FaceModel, load_model, save_model
+from core.iface.speech_features import N_FEATURES
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +34,7 @@ def test_what_is_read_moves_as_what_was_written(models, variant, tmp_path):
     read = load_model(tmp_path / "face.npz")
     assert (read.variant, read.database, read.content_hash, read.seed) == (variant, "loud mouths", "abc", 7)
     assert read.markers == model.markers and read.face.expressions == model.face.expressions
-    heard = np.random.default_rng(0).normal(8.0, 5.0, (40, 10))
+    heard = np.random.default_rng(0).normal(8.0, 5.0, (40, N_FEATURES))
     for strengths in ({}, {"anger": 0.6}):
         assert (read.face.motion(heard, strengths) == model.face.motion(heard, strengths)).all()
     np.load(tmp_path / "face.npz", allow_pickle=False)
@@ -57,10 +58,12 @@ def test_damage_anywhere_is_one_sentence_or_does_no_harm(models, variant, tmp_pa
         except UserFacingError as error:
             assert "face.npz" in error.message
         else:
-            assert np.isfinite(face.motion(np.zeros((3, 10)), {})).all()
+            assert np.isfinite(face.motion(np.zeros((3, N_FEATURES)), {})).all()
 
 
-@pytest.mark.parametrize("name", ["neutral", "silence", "units0_units", "units1_mean", "nets0_weights1"])
+@pytest.mark.parametrize(
+    "name", ["neutral", "silence", "units0_units", "units1_mean", "nets0_weights1", "ears0_offsets1"]
+)
 def test_arrays_that_do_not_belong_together_are_refused(models, name, tmp_path):
     path = tmp_path / "face.npz"
     save_model(models["modern"], path)
@@ -74,9 +77,10 @@ def test_arrays_that_do_not_belong_together_are_refused(models, name, tmp_path):
 @pytest.mark.parametrize(
     ("head", "told"),
     [
-        ({"format": "efase-animemes 1"}, "no speaking face"), ({"version": 2}, "another version"),
+        ({"format": "efase-animemes 1"}, "no speaking face"), ({"version": 1}, "another version"),
         ({"window": [3, 9]}, "damaged"), ({"window": [3]}, "damaged"), ({"variant": "other"}, "damaged"),
         ({"expressions": ["anger", "anger"]}, "damaged"), ({"markers": ["a"]}, "damaged"), ({"seed": None}, "damaged"),
+        ({"window": [1, 3]}, "damaged"), ({"ears": []}, "damaged"), ({"ears": [["relu", 0]]}, "damaged"),
         ({"nets": []}, "damaged"), ({"nets": [["sine", 3]]}, "damaged"), ({"nets": [["relu", 10**9]]}, "damaged"),
     ],
 )  # fmt: skip

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from core.iface.speech_features import N_CEPSTRA, RATE_HZ, SAMPLE_RATE_HZ, SpeechFeatureStream, speech_features
+from core.iface.speech_features import N_FEATURES, RATE_HZ, SAMPLE_RATE_HZ, SpeechFeatureStream, speech_features
 from core.media.audio import Audio
 
 
@@ -58,7 +58,7 @@ def test_another_rate_sounds_the_same():
 def test_beyond_the_end_there_is_silence():
     sound = murmur(0.5)
     longer = speech_features(sound, 30)
-    assert longer.shape == (30, N_CEPSTRA) and longer.dtype == np.float32
+    assert longer.shape == (30, N_FEATURES) and longer.dtype == np.float32
     np.testing.assert_array_equal(longer[:15], speech_features(sound)[:15])
     np.testing.assert_allclose(longer[-1], longer[-2], atol=1e-4)
 
