@@ -38,7 +38,6 @@ def told(ears: Sequence[Perceptron], context: np.ndarray, n_frames: int) -> np.n
 
     Roots of the shares of the phones, as far ahead as ears can tell, and the ten cepstra of each frame.
 
-
     context : shape (n_back + n_frames + n_ahead, 70)
     """
     phones = windows(np.sqrt(phone_shares(ears, context)), n_frames)
