@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import QSize, Qt, QTimer
+from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import QComboBox, QFileDialog, QHBoxLayout, QSplitter, QToolButton, QVBoxLayout, QWidget
 
@@ -14,8 +14,6 @@ from app.comparison_film import FilmRequest, compose_apart
 from app.comparison_words import how_fair, title_of
 from app.emotion_colours import emotion_colours
 from app.export import VideoSettings
-from app.icons import icon
-from app.jobs import JobRunner
 from app.panels.compare.choices import EngineChoices, usual_beside
 from app.panels.compare.faces import ComparedFaces
 from app.panels.compare.figures import FiguresTable
@@ -30,11 +28,10 @@ from app.panels.compare.work import (
     find_controls,
     write_curves,
 )
-from app.panels.message_bar import MessageBar
 from app.panels.pane import Choice, ElidedLabel, label
-from app.panels.status import StatusLine
+from app.panels.tool_window import ToolWindow
 from app.panels.transport import Transport
-from app.settings import last_folder, remember_folder, window_settings
+from app.settings import last_folder, remember_folder
 from app.texts import compare as texts
 from app.theme import STEP
 from core.document.change import ASKED_OF_THE_SEARCH, Change
@@ -53,27 +50,20 @@ _FILM_PX = (1280, 720)
 _FOLDER = "compare"
 
 
-class CompareWindow(QWidget):
+class CompareWindow(ToolWindow):
     """Non-modal, under the playhead of the main window; closed, it does nothing.
 
     compared : what is on show, or None
     """
 
     def __init__(self, authoring: Authoring, parent: QWidget | None = None) -> None:
-        super().__init__(parent, Qt.WindowType.Window)
-        self.authoring = authoring
-        self.jobs = JobRunner(self)
+        super().__init__(authoring, texts.TITLE, _SIZE, parent)
         self.compared: Compared | None = None
         self.capture: KnownCapture | None = None
         self._capture_of: tuple | None = None
         self._controls: dict[str, ControlTrack] | None = None
         self._is_stale, self._was_open, self._note = True, False, ""
-        self._settings = window_settings()
         self._soon = QTimer(self, singleShot=True, interval=_AFTER_MS)
-        self.setWindowTitle(texts.TITLE)
-        self.setWindowIcon(icon("workstation"))
-        self.message = MessageBar()
-        self.status = StatusLine(self.jobs)
         self._arrange()
         self._join()
         self._show_markers()
@@ -102,10 +92,7 @@ class CompareWindow(QWidget):
         whole.addWidget(upper)
         whole.addWidget(lower)
         whole.setStretchFactor(0, 1)
-        column = _column(self)
-        column.addWidget(self.message)
-        column.addWidget(whole, 1)
-        column.addWidget(self.status)
+        self.fill(whole)
 
     def _header(self) -> QWidget:
         """Lay out who is compared, and how it is shown."""
@@ -219,9 +206,7 @@ class CompareWindow(QWidget):
             asked = self.authoring.document.engine
             one = asked if self.choices.offers(asked) else DEFAULT_ENGINE
             self.choices.choose(one, usual_beside(one))
-        self.show()
-        self.raise_()
-        self.activateWindow()
+        super().open_now()
         self.on_playhead_moved(self.authoring.view.playhead_s)
         if self._is_stale:
             self._soon.start(0)
@@ -440,11 +425,6 @@ class CompareWindow(QWidget):
         self.close()
 
     # Qt
-
-    def sizeHint(self) -> QSize:
-        """Ask for room for two faces and four lanes, less than the screen has."""
-        room = self.screen().availableSize()
-        return QSize(min(_SIZE[0], room.width()), min(_SIZE[1], room.height()))
 
     def closeEvent(self, event) -> None:
         """Leave nothing running."""

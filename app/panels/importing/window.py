@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from pyqtgraph import PlotWidget
-from PySide6.QtCore import QSize, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import (
     QFileDialog,
@@ -16,14 +16,11 @@ from PySide6.QtWidgets import (
     QPushButton,
     QStackedWidget,
     QTableView,
-    QVBoxLayout,
     QWidget,
 )
 
 from app.authoring import Authoring
 from app.emotion_colours import emotion_colours
-from app.icons import icon
-from app.jobs import JobRunner
 from app.panels.importing.build_page import BuildPage
 from app.panels.importing.draft import ImportDraft
 from app.panels.importing.files_page import FilesPage
@@ -35,10 +32,9 @@ from app.panels.importing.review_page import ReviewPage
 from app.panels.importing.sentence_table import table_style
 from app.panels.importing.sound_page import SoundPage
 from app.panels.importing.speech_work import SpeechWork
-from app.panels.message_bar import MessageBar
-from app.panels.status import StatusLine
+from app.panels.tool_window import ToolWindow
 from app.player import Player
-from app.settings import last_folder, remember_folder, window_settings
+from app.settings import last_folder, remember_folder
 from app.texts import importing as texts
 from app.theme import STEP, theme
 
@@ -47,18 +43,12 @@ _SIZE = (1240, 780)
 _FOLDER = "captures"
 
 
-class ImportWindow(QWidget):
+class ImportWindow(ToolWindow):
     """Non-modal; it keeps its plan while it is closed. Closing it does not stop a build that goes on."""
 
     def __init__(self, authoring: Authoring, parent: QWidget | None = None) -> None:
-        super().__init__(parent, Qt.WindowType.Window)
-        self.authoring = authoring
-        self.jobs = JobRunner(self)
+        super().__init__(authoring, texts.TITLE, _SIZE, parent)
         self.draft = ImportDraft(self.jobs, self)
-        self._settings = window_settings()
-        self.setWindowTitle(texts.TITLE)
-        self.setWindowIcon(icon("workstation"))
-        self.message = MessageBar()
         self.steps = QListWidget(toolTip=texts.STEPS_TIP)
         self.pages: tuple[Page, ...] = self._make_pages()
         self._stack = QStackedWidget()
@@ -115,20 +105,11 @@ class ImportWindow(QWidget):
         self.over_button.clicked.connect(self.draft.start_over)
         self.back_button.clicked.connect(lambda: self.step(-1))
         self.next_button.clicked.connect(lambda: self.step(1))
-        self.status = StatusLine(self.jobs)
         middle = QHBoxLayout()
         middle.setSpacing(0)
         middle.addWidget(self.steps)
         middle.addWidget(self._stack, 1)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.message)
-        column.addLayout(middle, 1)
-        column.addWidget(_rule())
-        column.addLayout(row)
-        column.addWidget(_rule())
-        column.addWidget(self.status)
+        self.fill(middle, _rule(), row, _rule())
 
     def _dress(self) -> None:
         t = theme()
@@ -168,12 +149,6 @@ class ImportWindow(QWidget):
             QShortcut(QKeySequence(key), self, activated=done)
 
     # Reactions
-
-    def open_now(self) -> None:
-        """Show the window, in front."""
-        self.show()
-        self.raise_()
-        self.activateWindow()
 
     def on_step(self, row: int) -> None:
         """Show another page."""
@@ -219,13 +194,6 @@ class ImportWindow(QWidget):
         self.player.pause()
         self.jobs.shut_down()
         self.close()
-
-    # Qt
-
-    def sizeHint(self) -> QSize:
-        """Ask for room for tables and pictures, less than the screen has."""
-        room = self.screen().availableSize()
-        return QSize(min(_SIZE[0], room.width()), min(_SIZE[1], room.height()))
 
 
 def _rule() -> QFrame:

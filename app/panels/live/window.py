@@ -5,14 +5,12 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
-from PySide6.QtCore import QSize, Qt, QTimer, Signal
+from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QPushButton, QSplitter, QVBoxLayout, QWidget
 
 from app.authoring import Authoring
 from app.emotion_colours import emotion_colours
-from app.icons import icon
-from app.jobs import JobRunner
 from app.live.microphone import InputDevice
 from app.live.session import TimedFrame
 from app.panels.control.section import Section, combo_box, quiet_button
@@ -21,10 +19,9 @@ from app.panels.live.delay import DelayTable
 from app.panels.live.driver import LiveDriver
 from app.panels.live.expression import ExpressionChoice
 from app.panels.live.meter import Meter
-from app.panels.message_bar import MessageBar
 from app.panels.pane import Choice, Pane, label, toggle
-from app.panels.status import StatusLine
-from app.settings import last_folder, remember_folder, window_settings
+from app.panels.tool_window import ToolWindow
+from app.settings import last_folder, remember_folder
 from app.texts import FILTER_SOUND
 from app.texts import live as texts
 from app.theme import STEP
@@ -42,7 +39,7 @@ _FILE = "file"
 _ADDRESS = "live/stream"
 
 
-class LiveWindow(QWidget):
+class LiveWindow(ToolWindow):
     """Non-modal; closed, it listens no more.
 
     project_asked(path) : a recording that was saved is to be opened
@@ -51,15 +48,8 @@ class LiveWindow(QWidget):
     project_asked = Signal(object)
 
     def __init__(self, authoring: Authoring, parent: QWidget | None = None) -> None:
-        super().__init__(parent, Qt.WindowType.Window)
-        self.authoring = authoring
-        self.jobs = JobRunner(self)
+        super().__init__(authoring, texts.TITLE, _SIZE, parent)
         self.driver = LiveDriver(self.jobs, self)
-        self._settings = window_settings()
-        self.setWindowTitle(texts.TITLE)
-        self.setWindowIcon(icon("workstation"))
-        self.message = MessageBar()
-        self.status = StatusLine(self.jobs)
         self._file: Path | None = None
         self._saved: Path | None = None
         self._unpainted: TimedFrame | None = None
@@ -91,12 +81,7 @@ class LiveWindow(QWidget):
         body.addWidget(self.pane)
         body.addWidget(controls)
         body.setStretchFactor(0, 1)
-        whole = QVBoxLayout(self)
-        whole.setContentsMargins(0, 0, 0, 0)
-        whole.setSpacing(0)
-        whole.addWidget(self.message)
-        whole.addWidget(body, 1)
-        whole.addWidget(self.status)
+        self.fill(body)
 
     def _listening(self) -> Section:
         section = Section(texts.LISTEN_TO)
@@ -184,9 +169,7 @@ class LiveWindow(QWidget):
 
     def open_now(self) -> None:
         """Show the window, in front."""
-        self.show()
-        self.raise_()
-        self.activateWindow()
+        super().open_now()
         self._show_face()
         self.driver.use(self.authoring.document.database)
         self.driver.find_devices()
@@ -402,11 +385,6 @@ class LiveWindow(QWidget):
             return
         self.send_button.setChecked(False)
         super().closeEvent(event)
-
-    def sizeHint(self) -> QSize:
-        """Ask for room for a face and the controls, less than the screen has."""
-        room = self.screen().availableSize()
-        return QSize(min(_SIZE[0], room.width()), min(_SIZE[1], room.height()))
 
 
 def _clock(seconds: float) -> str:

@@ -5,20 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from PySide6.QtCore import QSize, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QPushButton, QSplitter, QVBoxLayout, QWidget
 
 from app.authoring import Authoring
-from app.icons import icon
-from app.jobs import JobRunner
-from app.panels.message_bar import MessageBar
 from app.panels.own_face.draft import OwnFaceDraft
 from app.panels.own_face.guide import Guide
 from app.panels.own_face.panes import FacePane, ScanPane
 from app.panels.own_face.point_view import Place
-from app.panels.status import StatusLine
-from app.settings import last_folder, remember_folder, window_settings
+from app.panels.tool_window import ToolWindow
+from app.settings import last_folder, remember_folder
 from app.texts import own_face as texts
 from app.theme import STEP
 from core.document.parts import FaceChoice
@@ -33,19 +30,12 @@ _ROUND = np.array([[0, 0, 1.0], [0, 1.0, 0], [-1.0, 0, 0]])
 _FOLDER, _FACE_FOLDER = "scan", "face"
 
 
-class OwnFaceWindow(QWidget):
+class OwnFaceWindow(ToolWindow):
     """Non-modal; it keeps its points while it is closed."""
 
     def __init__(self, authoring: Authoring, parent: QWidget | None = None) -> None:
-        super().__init__(parent, Qt.WindowType.Window)
-        self.authoring = authoring
-        self.jobs = JobRunner(self)
+        super().__init__(authoring, texts.TITLE, _SIZE, parent)
         self.draft = OwnFaceDraft(self.jobs, self)
-        self._settings = window_settings()
-        self.setWindowTitle(texts.TITLE)
-        self.setWindowIcon(icon("workstation"))
-        self.message = MessageBar()
-        self.status = StatusLine(self.jobs)
         self._arrange()
         self._join()
         self.refresh()
@@ -75,12 +65,7 @@ class OwnFaceWindow(QWidget):
         middle.setStretchFactor(2, 1)
         views_px = (_SIZE[0] - _GUIDE_PX) // 2
         middle.setSizes([_GUIDE_PX, views_px, views_px])
-        whole = QVBoxLayout(self)
-        whole.setContentsMargins(0, 0, 0, 0)
-        whole.setSpacing(0)
-        whole.addWidget(self.message)
-        whole.addWidget(middle, 1)
-        whole.addWidget(self.status)
+        self.fill(middle)
 
     def _join(self) -> None:
         draft, undo, guide = self.draft, self.draft.undo_stack, self.guide
@@ -123,9 +108,7 @@ class OwnFaceWindow(QWidget):
 
     def open_now(self) -> None:
         """Show the window, in front, with a generic face."""
-        self.show()
-        self.raise_()
-        self.activateWindow()
+        super().open_now()
         if self.draft.generic is None and not self.jobs.is_running("generic"):
             face = self.authoring.document.face
             self.draft.open_generic(face.name if face is not None and face.name in CHARACTERS else DEFAULT)
@@ -274,10 +257,3 @@ class OwnFaceWindow(QWidget):
         for pane in (self.scan_pane, self.face_pane):
             pane.view.release()
         self.close()
-
-    # Qt
-
-    def sizeHint(self) -> QSize:
-        """Ask for room for two faces, less than the screen has."""
-        room = self.screen().availableSize()
-        return QSize(min(_SIZE[0], room.width()), min(_SIZE[1], room.height()))

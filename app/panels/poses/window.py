@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import QSize, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -21,16 +21,13 @@ from PySide6.QtWidgets import (
 )
 
 from app.authoring import Authoring
-from app.icons import icon
-from app.jobs import JobRunner
-from app.panels.message_bar import MessageBar
 from app.panels.pane import label
 from app.panels.poses.control_sliders import ControlSliders
 from app.panels.poses.draft import PosingDraft
 from app.panels.poses.faces import CapturedPane, PosedPane
 from app.panels.poses.work import rig_of_file
-from app.panels.status import StatusLine
-from app.settings import last_folder, remember_folder, window_settings
+from app.panels.tool_window import ToolWindow
+from app.settings import last_folder, remember_folder
 from app.texts import poses as texts
 from app.theme import STEP
 from core.document.change import Change
@@ -42,19 +39,12 @@ _FEWEST, _MOST, _USUAL = 2, 24, 7
 _FOLDER = "poses"
 
 
-class KeyPosesWindow(QWidget):
+class KeyPosesWindow(ToolWindow):
     """Non-modal; it keeps its poses while it is closed."""
 
     def __init__(self, authoring: Authoring, parent: QWidget | None = None) -> None:
-        super().__init__(parent, Qt.WindowType.Window)
-        self.authoring = authoring
-        self.jobs = JobRunner(self)
+        super().__init__(authoring, texts.TITLE, _SIZE, parent)
         self.draft = PosingDraft(self.jobs, self)
-        self._settings = window_settings()
-        self.setWindowTitle(texts.TITLE)
-        self.setWindowIcon(icon("workstation"))
-        self.message = MessageBar()
-        self.status = StatusLine(self.jobs)
         self._arrange()
         self._join()
         self.refresh()
@@ -70,12 +60,7 @@ class KeyPosesWindow(QWidget):
         middle.setStretchFactor(2, 1)
         faces_px = (_SIZE[0] - _LIST_PX - _CONTROLS_PX) // 2
         middle.setSizes([_LIST_PX, faces_px, faces_px, _CONTROLS_PX])
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.message)
-        column.addWidget(middle, 1)
-        column.addWidget(self.status)
+        self.fill(middle)
 
     def _shapes(self) -> QWidget:
         """Lay out the list and what fills it."""
@@ -163,9 +148,7 @@ class KeyPosesWindow(QWidget):
 
     def open_now(self) -> None:
         """Show the window, in front, with the character of the main window to begin with."""
-        self.show()
-        self.raise_()
-        self.activateWindow()
+        super().open_now()
         if self.draft.posing.face is None and not self.jobs.is_running("rig"):
             face = self.authoring.document.face
             self.draft.open_rig(face.name if face is not None and face.name in CHARACTERS else DEFAULT)
@@ -309,10 +292,3 @@ class KeyPosesWindow(QWidget):
         for pane in (self.captured, self.posed):
             pane.view.release()
         self.close()
-
-    # Qt
-
-    def sizeHint(self) -> QSize:
-        """Ask for room for two faces, less than the screen has."""
-        room = self.screen().availableSize()
-        return QSize(min(_SIZE[0], room.width()), min(_SIZE[1], room.height()))

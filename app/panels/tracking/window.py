@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from PySide6.QtCore import QSize, Qt, QTimer, Signal
+from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import (
     QComboBox,
@@ -20,17 +20,14 @@ from PySide6.QtWidgets import (
 )
 
 from app.authoring import Authoring
-from app.icons import icon
-from app.jobs import JobRunner
-from app.panels.message_bar import MessageBar
 from app.panels.pane import ElidedLabel, label
-from app.panels.status import StatusLine
+from app.panels.tool_window import ToolWindow
 from app.panels.tracking.canvas import ShownPoints, VideoCanvas
 from app.panels.tracking.draft import TrackingDraft
 from app.panels.tracking.guide import GuidePicture
 from app.panels.tracking.trust_strip import UNSURE, TrustStrip
 from app.panels.transport import Transport
-from app.settings import last_folder, remember_folder, window_settings
+from app.settings import last_folder, remember_folder
 from app.texts import tracking as texts
 from app.theme import STEP
 from app.video_frames import VideoFrames
@@ -44,7 +41,7 @@ _SIDE_PX = 264
 _FOLDER = "video"
 
 
-class TrackingWindow(QWidget):
+class TrackingWindow(ToolWindow):
     """Non-modal; it keeps its film and points while it is closed.
 
     import_asked(paths) : take these files into the import window
@@ -53,18 +50,11 @@ class TrackingWindow(QWidget):
     import_asked = Signal(list)
 
     def __init__(self, authoring: Authoring, parent: QWidget | None = None) -> None:
-        super().__init__(parent, Qt.WindowType.Window)
-        self.authoring = authoring
-        self.jobs = JobRunner(self)
+        super().__init__(authoring, texts.TITLE, _SIZE, parent)
         self.draft = TrackingDraft(self.jobs, self)
         self.frame = 0
-        self._settings = window_settings()
         self._frames = VideoFrames(self.jobs, "picture", self)
         self._clock = QTimer(self)
-        self.setWindowTitle(texts.TITLE)
-        self.setWindowIcon(icon("workstation"))
-        self.message = MessageBar()
-        self.status = StatusLine(self.jobs)
         self._arrange()
         self._join()
         self.draft.use_database(authoring.document.database)
@@ -98,12 +88,7 @@ class TrackingWindow(QWidget):
         middle.setSpacing(0)
         middle.addLayout(left, 1)
         middle.addWidget(self._side())
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.message)
-        column.addLayout(middle, 1)
-        column.addWidget(self.status)
+        self.fill(middle)
 
     def _side(self) -> QWidget:
         """Lay out what is to be done, from top to bottom."""
@@ -261,12 +246,6 @@ class TrackingWindow(QWidget):
         self.seek(next((f for f in poor if f > self.frame), poor[0]))
 
     # Reactions
-
-    def open_now(self) -> None:
-        """Show the window, in front."""
-        self.show()
-        self.raise_()
-        self.activateWindow()
 
     def on_document_changed(self, change: Change, _origin: object) -> None:
         """Take the units of another database."""
@@ -436,11 +415,6 @@ class TrackingWindow(QWidget):
         self._clock.stop()
         self.transport.show_playing(False)
         super().closeEvent(event)
-
-    def sizeHint(self) -> QSize:
-        """Ask for room for a film, less than the screen has."""
-        room = self.screen().availableSize()
-        return QSize(min(_SIZE[0], room.width()), min(_SIZE[1], room.height()))
 
 
 def _row(*widgets: QWidget | None) -> QHBoxLayout:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from PySide6.QtCore import QSize, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import (
     QComboBox,
@@ -20,18 +20,15 @@ from PySide6.QtWidgets import (
 
 from app.authoring import Authoring
 from app.figures import unit_names, unit_poses
-from app.icons import icon
-from app.jobs import JobRunner
 from app.panels.face_view import FaceView
-from app.panels.message_bar import MessageBar
 from app.panels.pane import Choice, ElidedLabel, Pane, label, toggle
-from app.panels.status import StatusLine
+from app.panels.tool_window import ToolWindow
 from app.panels.units.coverage_curve import CoverageCurve
 from app.panels.units.draft import UnitsDraft
 from app.panels.units.how_many import HowMany
 from app.panels.units.sliders import SliderList, ValueSlider
 from app.panels.units.work import FigureRequest, LearnRequest, draw
-from app.settings import last_folder, remember_folder, window_settings
+from app.settings import last_folder, remember_folder
 from app.texts import units as texts
 from app.theme import STEP
 from core.document.change import Change
@@ -45,19 +42,12 @@ _WEIGHTS, _WEIGHT_STEP = (-1.0, 2.0), 0.01
 _FOLDER = "figures"
 
 
-class UnitsWindow(QWidget):
+class UnitsWindow(ToolWindow):
     """Non-modal; learns from the database of the main window while it is open."""
 
     def __init__(self, authoring: Authoring, parent: QWidget | None = None) -> None:
-        super().__init__(parent, Qt.WindowType.Window)
-        self.authoring = authoring
-        self.jobs = JobRunner(self)
+        super().__init__(authoring, texts.TITLE, _SIZE, parent)
         self.draft = UnitsDraft(self.jobs, self)
-        self._settings = window_settings()
-        self.setWindowTitle(texts.TITLE)
-        self.setWindowIcon(icon("workstation"))
-        self.message = MessageBar()
-        self.status = StatusLine(self.jobs)
         self._arrange()
         self._join()
         self.refresh()
@@ -74,12 +64,7 @@ class UnitsWindow(QWidget):
             middle.addWidget(widget)
         middle.setStretchFactor(1, 1)
         middle.setSizes([_SETTINGS_PX, _SIZE[0] - _SETTINGS_PX - _SLIDERS_PX, _SLIDERS_PX])
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.message)
-        column.addWidget(middle, 1)
-        column.addWidget(self.status)
+        self.fill(middle)
 
     def _made_settings(self) -> QWidget:
         self.database = ElidedLabel()
@@ -160,9 +145,7 @@ class UnitsWindow(QWidget):
 
     def open_now(self) -> None:
         """Show the window, in front, with the units of the open database."""
-        self.show()
-        self.raise_()
-        self.activateWindow()
+        super().open_now()
         self._show_face()
         learned, document = self.draft.learned, self.authoring.document
         known = None if learned is None else (learned.request.database, learned.request.removed)
@@ -333,13 +316,6 @@ class UnitsWindow(QWidget):
         self.jobs.shut_down()
         self.view.release()
         self.close()
-
-    # Qt
-
-    def sizeHint(self) -> QSize:
-        """Ask for room for a face between two columns, less than the screen has."""
-        room = self.screen().availableSize()
-        return QSize(min(_SIZE[0], room.width()), min(_SIZE[1], room.height()))
 
 
 def _section(
