@@ -12,6 +12,7 @@ from core.face.characters import CHARACTERS
 from core.face.face import PARTS, Face
 from core.face.geodesic import surface_distances
 from core.face.marker_placement import ACTRESS_FILE, MarkerPlacement, load_marker_file
+from core.face.similarity import fit_similarity
 from core.motion.marker_set import MarkerSet
 
 CANDIDATES = 16  # nearest vertices offered to each marker; enough for all to find one of their own
@@ -57,26 +58,11 @@ def carry_over(face: Face, marker_set: MarkerSet, fixed: dict[int, int] | None =
             f"The face {face.name} and the markers share only {len(rows)} known points, and four are needed.",
             "Give a marker file that names a vertex for every marker, or for the landmarks.",
         )
-    scale, rotation, shift = similarity(source, target)
-    moved = scale * marker_set.rest @ rotation.T + shift
+    moved = fit_similarity(source, target)(marker_set.rest)
     # in three dimensions the kernel of the thin-plate spline is the distance itself; a little smoothing lets
     # landmarks that are not quite the same place on both sides bend the rest less
     bend = RBFInterpolator(moved[rows], target - moved[rows], kernel="linear", smoothing=1.0, degree=0)
     return moved + bend(moved)
-
-
-def similarity(source: np.ndarray, target: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-    """Return scale, rotation (3, 3) and shift (3,) with ``target`` = scale · rotation · source + shift, least squares.
-
-    Umeyama, "Least-squares estimation of transformation parameters between two point patterns" (1991).
-    """
-    middle_source, middle_target = source.mean(axis=0), target.mean(axis=0)
-    a, b = source - middle_source, target - middle_target
-    u, sizes, vt = np.linalg.svd(b.T @ a)
-    mirror = np.array([1.0, 1.0, np.sign(np.linalg.det(u @ vt))])
-    rotation = (u * mirror) @ vt
-    scale = float((sizes * mirror).sum() / np.square(a).sum())
-    return scale, rotation, middle_target - scale * rotation @ middle_source
 
 
 def _fixed(face: Face, marker_set: MarkerSet, placement: MarkerPlacement | None) -> dict[int, int]:

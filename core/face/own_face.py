@@ -29,11 +29,11 @@ from core.face.own_face_texture import SIZE_PX, scan_texture, unwrapped
 from core.face.own_face_warp import (
     ANOTHER_SCAN,
     LandmarkWarp,
-    Placement,
     check_on_surface,
     doubtful_points,
     place_scan,
 )
+from core.face.similarity import Similarity
 from core.progress import SILENT, Progress
 
 FEWEST_SURE = 7
@@ -73,7 +73,7 @@ class OwnFace:
 
     face: Face
     scan: Scan
-    placement: Placement
+    placement: Similarity
     uv: np.ndarray
     warped: FitDistance
     closed: FitDistance
@@ -101,13 +101,13 @@ def fit_own_face(
     progress.step(0.0, "placing the scan")
     known = generic_points(generic) if on_generic is None else dict(on_generic)
     placement = place_scan(points, known)
-    doubtful = doubtful_points({key: placement.apply(points[key]) for key in points}, known)
+    doubtful = doubtful_points({key: placement(points[key]) for key in points}, known)
     if doubtful and len(points) - len(doubtful) >= FEWEST_SURE:
         points = {key: place for key, place in points.items() if key not in doubtful}
         placement = place_scan(points, known, needs_all=False)
     placed = scan.placed(placement.scale, placement.rotation, placement.shift)
     keys = [key for key in known if key in points]
-    targets = placement.apply([points[key] for key in keys])
+    targets = placement([points[key] for key in keys])
     near = _near_head(placed, targets, generic)
     if len(near) == 0:
         raise UserFacingError("The points lie far off the scan's surface.", ANOTHER_SCAN)
@@ -167,7 +167,7 @@ def painted_by_photo(
 
     Raises `UserFacingError` as `core.face.own_face_photo.fit_camera` does.
     """
-    places = {key: own.placement.apply(point) for key, point in points.items()}
+    places = {key: own.placement(point) for key, point in points.items()}
     camera = fit_camera(places, pixels, (photo.shape[1], photo.shape[0]))
     return _with_texture(own, photo_texture(own.face, own.uv, photo, camera, progress=progress)), camera
 

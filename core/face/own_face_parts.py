@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from core.face.binding import similarity
 from core.face.face import PARTS, Face
 from core.face.own_face_protected import Protected
+from core.face.similarity import Similarity, fit_similarity
 
 MOUTH_PARTS = ("upper_teeth", "lower_teeth", "tongue")
 LASHES = tuple(part for part in PARTS if part.startswith("lashes"))
@@ -66,9 +66,9 @@ def place_parts(face: Face, protected: Protected, fitted: np.ndarray) -> tuple[n
     frames[protected.surface] = local_frames(surface, fitted, np.arange(len(surface)))
     inside = np.flatnonzero(np.isin(face.part, [PARTS.index(part) for part in MOUTH_PARTS]))
     if len(inside):
-        scale, turn, shift = _mouth_fit(face, surface, fitted)
-        positions[inside] = scale * rest[inside] @ turn.T + shift
-        frames[inside] = scale * turn
+        fit = _mouth_fit(face, surface, fitted)
+        positions[inside] = fit(rest[inside])
+        frames[inside] = fit.scale * fit.rotation
     skin = face.part[protected.surface] == PARTS.index("skin")
     others = np.flatnonzero(np.isin(face.part, [PARTS.index(part) for part in (*LASHES, "other")]))
     others = np.setdiff1d(others, protected.surface)
@@ -121,10 +121,10 @@ def _clear_ball(rest_ball: np.ndarray, ball: np.ndarray, surface: np.ndarray, fi
     fitted[deep] = centre + off[deep] * (least[deep] / np.maximum(now[deep], 1e-9))[:, None]
 
 
-def _mouth_fit(face: Face, surface: np.ndarray, fitted: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+def _mouth_fit(face: Face, surface: np.ndarray, fitted: np.ndarray) -> Similarity:
     """Return the similarity of the lips and the skin around them."""
     corners = [face.landmarks[f"mouth_corner_{side}"] for side in ("left", "right")]
     left, right = face.positions[corners].astype(float)
     away = np.linalg.norm(surface - (left + right) / 2, axis=1) / np.linalg.norm(left - right)
     near = away < 0.75
-    return similarity(surface[near], fitted[near])
+    return fit_similarity(surface[near], fitted[near])

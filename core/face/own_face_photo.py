@@ -11,11 +11,11 @@ from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
 from core.errors import UserFacingError
-from core.face.binding import similarity
 from core.face.face import PARTS, Face
 from core.face.own_face_raster import covered_pixels
 from core.face.own_face_surface import vertex_normals
 from core.face.own_face_texture import SIZE_PX, SkinTexels, sampled
+from core.face.similarity import fit_similarity
 from core.progress import SILENT, Progress
 
 FEWEST = 6
@@ -68,7 +68,7 @@ def fit_camera(
     centre, middle = np.array(size_px) / 2.0, source.mean(axis=0)
     # seen from straight ahead by a portrait lens, as most photos of faces are
     flat = np.column_stack([(target - target.mean(axis=0)) * [1.0, -1.0], np.zeros(len(keys))])
-    scale = max(similarity((source - middle) * [1.0, 1.0, 0.0], flat)[0], 1e-6)
+    scale = max(fit_similarity((source - middle) * [1.0, 1.0, 0.0], flat).scale, 1e-6)
     focal = 1.6 * max(size_px)
     distance = focal / scale
     pan = (target.mean(axis=0) - centre) * [1.0, -1.0] / scale

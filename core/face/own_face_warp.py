@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.errors import UserFacingError
-from core.face.binding import similarity
 from core.face.mesh_files import OUTER_EYES_MM, UNITS_MM
 from core.face.own_face_points import feature_points
+from core.face.similarity import Similarity, fit_similarity
 
 # A unit is believed when eyes then lie apart as some head's do.
 EYES_RATIO = 1.6
@@ -22,22 +22,9 @@ FAR_OFF = 0.02  # of the scan's size
 MISPLACED, MISPLACED_SHARE = 3.0, 0.3  # of what the similarity misses the other points by, and of the eyes' distance
 
 
-@dataclass(frozen=True)
-class Placement:
-    """How a scan comes to lie on the generic face: ``scale`` · rotation · position + shift, mm."""
-
-    scale: float
-    rotation: np.ndarray
-    shift: np.ndarray
-
-    def apply(self, points: np.ndarray) -> np.ndarray:
-        """Place points, shape (n, 3)."""
-        return self.scale * np.asarray(points, float) @ self.rotation.T + self.shift
-
-
 def place_scan(
     points: Mapping[str, np.ndarray], generic: Mapping[str, np.ndarray], needs_all: bool = True
-) -> Placement:
+) -> Similarity:
     """Turn and shift a scan onto the generic face, and bring it to mm.
 
     points : on the scan, key to shape (3,), in its unit; generic : on the generic face, mm
@@ -65,19 +52,20 @@ def place_scan(
     if close.min() < SAME_PLACE * spread[0]:
         a, b = (keys[k] for k in np.unravel_index(close.argmin(), close.shape))
         raise UserFacingError(f"The points {a} and {b} are at the same place of the scan.", "Click one of them again.")
-    scale, rotation, shift = similarity(source, target)
+    fit = fit_similarity(source, target)
     if _misfit(source, target) > 1.5 * _misfit(source, target[[keys.index(_other_side(key, keys)) for key in keys]]):
         raise UserFacingError(
             "Left and right of the points are swapped.", "The character's right side is at the left of the picture."
         )
     # as far apart as the corners of the eyes would be, whether these are among the points or not
-    apart = float(np.linalg.norm(generic["outer_eye_left"] - generic["outer_eye_right"])) / scale
+    apart = float(np.linalg.norm(generic["outer_eye_left"] - generic["outer_eye_right"])) / fit.scale
     unit = min(UNITS_MM, key=lambda mm: abs(np.log(apart * mm / OUTER_EYES_MM)))
     if 1 / EYES_RATIO < apart * unit / OUTER_EYES_MM < EYES_RATIO:
         # turn about the points' middle, so that it stays where the generic face has it
-        shift = shift + (scale - unit) * rotation @ source.mean(axis=0)
-        scale = unit
-    return Placement(float(scale), rotation, shift)
+        return Similarity(
+            float(unit), fit.rotation, fit.shift + (fit.scale - unit) * fit.rotation @ source.mean(axis=0)
+        )
+    return fit
 
 
 def check_points(points: Mapping[str, np.ndarray]) -> None:
@@ -113,8 +101,7 @@ def doubtful_points(points: Mapping[str, np.ndarray], generic: Mapping[str, np.n
     miss = np.zeros(len(keys))
     for k in range(len(keys)):
         rest = np.arange(len(keys)) != k
-        scale, rotation, shift = similarity(source[rest], target[rest])
-        miss[k] = np.linalg.norm(scale * source[k] @ rotation.T + shift - target[k])
+        miss[k] = np.linalg.norm(fit_similarity(source[rest], target[rest])(source[k]) - target[k])
     apart = float(np.linalg.norm(generic["outer_eye_left"] - generic["outer_eye_right"]))
     limit = max(MISPLACED * float(np.median(miss)), MISPLACED_SHARE * apart)
     return [keys[k] for k in np.argsort(-miss) if miss[k] > limit]
@@ -155,8 +142,7 @@ class LandmarkWarp:
 
 
 def _misfit(source: np.ndarray, target: np.ndarray) -> float:
-    scale, rotation, shift = similarity(source, target)
-    return float(np.linalg.norm(scale * source @ rotation.T + shift - target))
+    return float(np.linalg.norm(fit_similarity(source, target)(source) - target))
 
 
 def _other_side(key: str, keys: list[str]) -> str:

@@ -26,8 +26,8 @@ from app.panels.own_face.work import (
 )
 from app.texts import own_face as texts
 from core.errors import UserFacingError
-from core.face.binding import similarity
 from core.face.own_face_points import PointFile, feature_points, generic_points, save_points
+from core.face.similarity import fit_similarity
 
 _FEWEST_FOR_GUESS = 4
 TITLES = {point.key: point.title for point in feature_points()}
@@ -187,8 +187,7 @@ class OwnFaceDraft(QObject):
         spread = np.linalg.svd(source - source.mean(axis=0), compute_uv=False)
         if spread[1] < 0.2 * spread[0]:
             return None
-        scale, turn, shift = similarity(source, np.array([self.points.on_scan[k] for k in keys]))
-        return scale * turn @ generic[key] + shift
+        return fit_similarity(source, np.array([self.points.on_scan[k] for k in keys]))(generic[key])
 
     # Fit
 

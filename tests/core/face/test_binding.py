@@ -5,10 +5,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from core.errors import UserFacingError
-from core.face.binding import bind, carry_over, similarity
+from core.face.binding import bind, carry_over
 from core.face.face import Face
 from core.face.geodesic import surface_distances
 from core.face.marker_placement import ACTRESS_FILE, MARKERS, MarkerPlacement, load_marker_file, marker_set_on
+from core.face.similarity import fit_similarity
 from core.motion.marker_set import MarkerSet
 from core.motion.marker_table import read_marker_table
 
@@ -19,16 +20,16 @@ def test_a_similarity_is_found_again():
     rng = np.random.default_rng(0)
     source = rng.normal(0, 30, (12, 3))
     rotation = Rotation.from_euler("xyz", [20, -35, 70], degrees=True).as_matrix()
-    scale, found, shift = similarity(source, 1.7 * source @ rotation.T + [4, -5, 6])
-    assert scale == pytest.approx(1.7)
-    np.testing.assert_allclose(found, rotation, atol=1e-9)
-    np.testing.assert_allclose(shift, [4, -5, 6], atol=1e-9)
+    found = fit_similarity(source, 1.7 * source @ rotation.T + [4, -5, 6])
+    assert found.scale == pytest.approx(1.7)
+    np.testing.assert_allclose(found.rotation, rotation, atol=1e-9)
+    np.testing.assert_allclose(found.shift, [4, -5, 6], atol=1e-9)
 
 
 def test_a_mirror_image_is_not_taken_for_a_turn():
     source = np.random.default_rng(1).normal(0, 30, (12, 3))
-    _, rotation, _ = similarity(source, source * [-1, 1, 1])
-    assert np.linalg.det(rotation) == pytest.approx(1)
+    found = fit_similarity(source, source * [-1, 1, 1])
+    assert np.linalg.det(found.rotation) == pytest.approx(1)
 
 
 def test_the_actress_sits_where_her_table_says(face, actress):
@@ -115,8 +116,7 @@ def tracked():
     reference = frames[0] - frames[0].mean(axis=0)
     fitted = []
     for frame in frames:
-        scale, rotation, shift = similarity(frame[rigid], reference[rigid])
-        fitted.append(scale * frame @ rotation.T + shift)
+        fitted.append(fit_similarity(frame[rigid], reference[rigid])(frame))
     mean = np.mean(fitted, axis=0)
     eyes = np.linalg.norm(mean[names.index("MP033")] - mean[names.index("MP263")])
     rest = (mean - mean[names.index("MP168")]) * 90.0 / eyes

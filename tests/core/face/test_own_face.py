@@ -82,7 +82,7 @@ def few_rounds(monkeypatch):
 
 
 def in_scan(own, truth):
-    return own.placement.apply(truth @ TURN.T / 10.0 + SHIFT)
+    return own.placement(truth @ TURN.T / 10.0 + SHIFT)
 
 
 def test_the_face_lies_on_the_scan(own):

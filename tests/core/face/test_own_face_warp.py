@@ -58,7 +58,7 @@ def test_a_scan_in_any_unit_and_posture_is_laid_on_the_generic_face_at_its_own_s
     placement = place_scan(bigger, HEAD)
     assert placement.scale == unit_mm
     np.testing.assert_allclose(placement.rotation, TURN.T, atol=1e-9)
-    placed = placement.apply(np.array(list(bigger.values())))
+    placed = placement(np.array(list(bigger.values())))
     middle = np.array(list(HEAD.values())).mean(axis=0)
     np.testing.assert_allclose(placed - middle, 1.1 * (np.array(list(HEAD.values())) - middle), atol=1e-6)
 

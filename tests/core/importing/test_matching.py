@@ -9,7 +9,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from core.actress.corpus import actress_marker_set
-from core.importing.geometry_matching import assigned, fit_similarity
+from core.face.similarity import fit_similarity
+from core.importing.geometry_matching import assigned
 from core.importing.marker_parts import propose_parts
 from core.importing.matching import match_markers, typical_pose
 from core.importing.name_matching import likeness
