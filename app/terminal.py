@@ -9,7 +9,7 @@ import re
 import signal
 import sys
 import traceback
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import NoReturn
 
 from core.errors import UserFacingError
@@ -65,6 +65,20 @@ def print_json(answer: dict) -> None:
     except UnicodeEncodeError:  # a terminal without Unicode, or a file name that is none
         text = json.dumps(answer, allow_nan=False)
     print(text)
+
+
+def tell(answer: dict, in_words: Callable[[dict], str], as_json: bool) -> None:
+    """Say what a verb answers, in words or as JSON, and before that its warnings."""
+    warn(answer.get("warnings", ()))
+    if as_json:
+        print_json(answer)
+    else:
+        print(in_words(answer))
+
+
+def tell_written(answer: dict, as_json: bool) -> None:
+    """The same of a verb that wrote files: their names are all there is to say."""
+    tell(answer, lambda answer: "\n".join(answer["outputs"]), as_json)
 
 
 def end_on_signals() -> None:

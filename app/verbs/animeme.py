@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.terminal import print_json, progress_bar, warn
+from app.terminal import progress_bar, tell
 from app.verbs.options import AudioDir, Database, Json, Lexicon, Rate, ShapeNames, ShapeSheet
 
 train = typer.Typer(help="Learn a model of how someone speaks.", rich_markup_mode=None)
@@ -48,8 +48,4 @@ def train_animeme(
     with progress_bar("train") as progress:
         reading = CurveReading(shape_names, shape_sheet, rate, audio_dir, lexicon)
         answer = run(TrainingJob(output, db, corpus, tuple(curves or ()), reading, rig, form, sentences), progress)
-    warn(answer["warnings"])
-    if json:
-        print_json(answer)
-    else:
-        print(in_words(answer))
+    tell(answer, in_words, json)

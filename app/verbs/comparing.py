@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.terminal import print_json, progress_bar, warn
+from app.terminal import progress_bar, tell
 from app.verbs.options import Background, Database, Json, Language, Lexicon, PhoneTable, Strict
 
 
@@ -42,7 +42,7 @@ def compare(
 
     video = VideoSettings(
         frame_rate(fps), *video_size(size), style,
-        background=None if background is None else background_colour(background),
+        background=background_colour(background),
     )  # fmt: skip
     job = ComparisonJob(
         speech=speech, engines=tuple(engines), outputs=tuple(output or ()), text=text, phones=phones, database=db,
@@ -51,8 +51,4 @@ def compare(
     )  # fmt: skip
     with progress_bar("compare") as progress:
         answer = run(job, progress)
-    warn(answer["warnings"])
-    if json:
-        print_json(answer)
-    else:
-        print(in_words(answer))
+    tell(answer, in_words, json)

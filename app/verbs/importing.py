@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from app.terminal import print_json, progress_bar, warn
+from app.terminal import progress_bar, tell
 from app.verbs.options import AudioDir, Json, Lexicon, Rate, ShapeNames, ShapeSheet
 from core.errors import UserFacingError
 
@@ -61,11 +61,7 @@ def import_captures(
     )  # fmt: skip
     with progress_bar("import") as progress:
         answer = run(job, progress)
-    warn(answer.get("warnings", ()))
-    if json:
-        print_json(answer)
-    else:
-        print(in_words(answer))
+    tell(answer, in_words, json)
 
 
 def _size(text: str | None) -> tuple[int, int] | None:

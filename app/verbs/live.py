@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.terminal import print_json, progress_bar, warn
+from app.terminal import print_json, progress_bar, tell
 from app.verbs.options import Database, Json
 
 
@@ -45,11 +45,7 @@ def live(
         with progress_bar("live") as progress:
             ready = made_ready(job, progress)
         answer = run(job, ready)
-    warn(answer["warnings"])
-    if json:
-        print_json(answer)
-    else:
-        print(in_words(answer))
+    tell(answer, in_words, json)
 
 
 def _list_devices(json: bool) -> None:

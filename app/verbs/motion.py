@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.terminal import note, print_json, progress_bar, warn
+from app.terminal import note, print_json, progress_bar, tell_written
 from app.verbs.options import (
     OUTPUTS,
     Background,
@@ -108,7 +108,7 @@ def synth(
         else:
             answer = run_batch(BatchJob(batch, job, None, failures, jobs or -1, cluster), progress)
     if batch is None:
-        _tell_written(answer, json)
+        tell_written(answer, json)
     elif json:
         print_json(answer)
     else:
@@ -134,13 +134,4 @@ def export_project(
     )
     with progress_bar("export") as progress:
         answer = run(job, progress)
-    _tell_written(answer, json)
-
-
-def _tell_written(answer: dict, json: bool) -> None:
-    warn(answer["warnings"])
-    if json:
-        print_json(answer)
-    else:
-        for path in answer["outputs"]:
-            print(path)
+    tell_written(answer, json)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.terminal import print_json, progress_bar, warn
+from app.terminal import progress_bar, tell_written
 from app.verbs.options import Background, Database, Hold, Json, KeyPoses, Language, Lexicon, PhoneTable, Span, Strict
 from core.errors import UserFacingError
 
@@ -67,7 +67,7 @@ def lipsync(
             answer = synthesis.run(job, progress)
         else:
             answer = by_model.run(by_model.LipsyncJob(model=model, **common), progress)
-    _tell_written(answer, json)
+    tell_written(answer, json)
 
 
 def curves(
@@ -93,7 +93,7 @@ def curves(
     )  # fmt: skip
     with progress_bar("curves") as progress:
         answer = run(CurveJob(track, tuple(output), names, rate, mapping, audio, face, video), progress)
-    _tell_written(answer, json)
+    tell_written(answer, json)
 
 
 def poses(
@@ -110,13 +110,4 @@ def poses(
 
     with progress_bar("poses") as progress:
         answer = run(output, db, face, keys, progress)
-    _tell_written(answer, json)
-
-
-def _tell_written(answer: dict, json: bool) -> None:
-    warn(answer["warnings"])
-    if json:
-        print_json(answer)
-    else:
-        for path in answer["outputs"]:
-            print(path)
+    tell_written(answer, json)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.terminal import note, print_json, progress_bar, warn
+from app.terminal import note, print_json, progress_bar, tell
 from app.verbs.options import Database, Json
 from core.errors import UserFacingError
 
@@ -58,11 +58,7 @@ def stimuli(
     )  # fmt: skip
     with progress_bar("stimuli") as progress:
         answer = run(job, progress)
-    warn(answer["warnings"])
-    if json:
-        print_json(answer)
-    else:
-        print(in_words(answer))
+    tell(answer, in_words, json)
 
 
 def stimuli_table(

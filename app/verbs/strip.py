@@ -44,7 +44,7 @@ def strip(
         raise UserFacingError("The moments are told by --count and by --times; choose one of them.")
     settings = StripSettings(
         () if times is None else _seconds(times), StripSettings.count if count is None else count, video_size(size),
-        style, None if background is None else background_colour(background), title,
+        style, background_colour(background), title,
     )  # fmt: skip
     job = StripJob(audio, output, text, phones, db, tuple(emotion or ("neutral",)), tuple(engine or ("search",)),
                    captured, face, markers, settings)  # fmt: skip
